@@ -48,8 +48,8 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
     rows(tree, &["verify", "--mutations", "--json"], |rows| rows.iter().filter_map(blindness).collect())
 }
 
-/// Benches whose baselines are promises about laws and elements.
-const SPEED: [&str; 9] = [
+/// Benches whose baselines are promises about laws and elements, and about what is shown 25 times a second.
+const SPEED: [&str; 11] = [
     "law_text_tensor",
     "law_text_scalar",
     "law_ready",
@@ -59,6 +59,8 @@ const SPEED: [&str; 9] = [
     "pyramid5_forces",
     "tangents",
     "formal",
+    "contours_500",
+    "view_network",
 ];
 
 /// Every figure of these benches is as good as its baseline.

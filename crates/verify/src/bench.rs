@@ -249,6 +249,11 @@ pub const BENCHES: &[Bench] = &[
         run: view::rate,
     },
     Bench {
+        name: "view_network",
+        what: "a frame of a lattice of 8,019 masses and their links, on the thread of the world, and frames that a client on this machine gets of it while it moves [ms, frames/s]",
+        run: view::network,
+    },
+    Bench {
         name: "static_100k",
         what: "equilibrium of the reference bar, n = 12, St. Venant-Kirchhoff, to 1e-8 [s]",
         run: beams::static_100k,

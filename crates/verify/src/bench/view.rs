@@ -63,3 +63,36 @@ pub fn rate(effort: Effort) -> Result<Vec<Figure>, String> {
         figure("view_latency", latency, "ms", false, 100.0),
     ])
 }
+
+/// Frames a second that a live view is to show of masses and links (2.13 of the networks' specification).
+const LIVE: f64 = 25.0;
+
+/// A frame of a lattice of 8,019 masses and links, and how many of them a client on this machine gets while it moves.
+pub fn network(effort: Effort) -> Result<Vec<Figure>, String> {
+    let settings = ["parameters.count=27".to_owned()];
+    let cost = frame_cost(scene("network_lattice", &settings)?, effort.choose(50, 500))?;
+    let served = served(
+        scene("network_lattice", &settings)?,
+        Duration::from_secs(effort.choose(2, 10)),
+        effort.choose(5, 20),
+    )?;
+    let (value, spread) = median(cost.seconds.iter().map(|seconds| 1e3 * seconds).collect());
+    let figure = |name: &str, value: f64, unit: &'static str, higher_is_better: bool, baseline: f64| Figure {
+        by_processor: None,
+        name: name.to_owned(),
+        value,
+        unit,
+        higher_is_better,
+        error: cost.error,
+        error_of: "positions of masses, in the size of the lattice: numbers of four bytes".to_owned(),
+        baseline: Some(baseline),
+        threads: rayon::current_num_threads(),
+        samples: cost.seconds.len(),
+        spread,
+        bytes: cost.bytes,
+    };
+    Ok(vec![
+        figure("view_network_frame", value, "ms", false, 1e3 / LIVE),
+        figure("view_network_rate", served.rate, "frames/s", true, LIVE),
+    ])
+}

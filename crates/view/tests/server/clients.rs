@@ -2,10 +2,12 @@
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use serde_json::json;
 use souple_view::SUBPROTOCOL;
+use souple_view::measure::served;
 
 use crate::client::{Page, SCENE, World};
 
@@ -36,6 +38,16 @@ fn paths_and_sites() {
     assert_eq!(world.ask(&foreign).status, 403);
     assert_eq!(world.ask("\u{16}\u{3}\u{1}\r\n\r\n").status, 400);
     assert_eq!(world.ask(&format!("GET /socket HTTP/1.1\r\n{own}\r\n")).status, 426);
+}
+
+/// Masses and links in motion are sent 25 times a second and more.
+#[test]
+fn networks_are_shown_25_times_a_second() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/network_lattice");
+    let scene =
+        souple_scene::read_file(&folder.join("scene.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let served = served(scene, Duration::from_secs(2), 1).expect("it is served");
+    assert!(served.rate >= 25.0, "{} frames a second", served.rate);
 }
 
 /// Pages of other sites do not get a socket, whatever else they say.

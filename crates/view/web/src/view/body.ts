@@ -208,6 +208,7 @@ export class Body {
     this.style = style;
     this.dark = dark;
     this.mesh.castShadow = style !== "wireframe";
+    this.network?.setWire(style === "wireframe");
     this.setVisible();
     this.setLines();
   }

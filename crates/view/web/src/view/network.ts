@@ -1,7 +1,17 @@
-// Links and balls of a body: sticks coloured by the state of their link, masses as large as they keep others off.
+// Links and balls of a body: sticks coloured by the state of their link, masses as large as they keep others off; in wires, lines
+// and points, which any number of them may be.
 
-import { Group } from "three";
-import type { Object3D, Plane } from "three";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DynamicDrawUsage,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Points,
+  PointsMaterial,
+} from "three";
+import type { Material, Object3D, Plane } from "three";
 import type { BodyFrame, FieldInfo, NetworkShape } from "../protocol";
 import { Instances } from "./instances";
 import { BODY_COLOURS, STATE_COLOURS, colourAt, linearOf } from "./palette";
@@ -13,6 +23,13 @@ const LEAST = 0.0009;
 const MOST = 0.004;
 /** Radius of masses that no link joins and nothing gives a size. */
 const POINT = 0.007;
+/** Of a mass in wires [px]. */
+const DOT = 4;
+
+type Wires = LineSegments<BufferGeometry, LineBasicMaterial>;
+type Dots = Points<BufferGeometry, PointsMaterial>;
+/** What a frame is painted with. */
+type Painted = [BodyFrame, Float32Array | undefined, FieldInfo["of"], Range, Float32Array];
 
 export class Network {
   readonly group = new Group();
@@ -23,6 +40,10 @@ export class Network {
   private readonly own: Float32Array;
   private readonly states = STATE_COLOURS.map(linearOf);
   private readonly links: Uint32Array;
+  private readonly wires: Wires;
+  private readonly dots: Dots;
+  private isWire = false;
+  private last: Painted | null = null;
   /** Balls are drawn as large at least: of one smaller than a pixel nothing is seen [m]. */
   least = 0;
   /** Of the largest ball [m]. */
@@ -37,7 +58,20 @@ export class Network {
     this.largest = this.sizes.reduce((most, radius) => Math.max(most, radius), 0);
     this.sticks = new Instances("stick", count);
     this.balls = new Instances("ball", this.sizes.filter((radius) => radius > 0).length);
-    this.group.add(this.sticks.mesh, this.balls.mesh);
+    this.wires = new LineSegments(coloured(2 * count), new LineBasicMaterial({ vertexColors: true }));
+    const dot = new PointsMaterial({ vertexColors: true, size: DOT, sizeAttenuation: false });
+    this.dots = new Points(coloured(this.sizes.length), dot);
+    this.wires.frustumCulled = this.dots.frustumCulled = false;
+    this.group.add(this.sticks.mesh, this.balls.mesh, this.wires, this.dots);
+    this.setWire(false);
+  }
+
+  /** Whether lines and points stand for it. */
+  setWire(isWire: boolean): void {
+    this.isWire = isWire;
+    this.sticks.mesh.visible = this.balls.mesh.visible = !isWire;
+    this.wires.visible = this.dots.visible = isWire;
+    if (this.last) this.update(...this.last);
   }
 
   /** What a ray may meet. */
@@ -46,6 +80,8 @@ export class Network {
   }
 
   prepareForRay(): void {
+    // rays meet what is solid
+    if (this.isWire && this.last) this.fill(...this.last);
     this.sticks.prepareForRay();
     this.balls.prepareForRay();
   }
@@ -57,6 +93,42 @@ export class Network {
     range: Range,
     map: Float32Array,
   ): void {
+    this.last = [frame, values, of, range, map];
+    if (this.isWire) this.draw(...this.last);
+    else this.fill(...this.last);
+  }
+
+  /** Lines and points. */
+  private draw(...[frame, values, of, range, map]: Painted): void {
+    const { positions, linkStates } = frame;
+    const ofLinks = of === "links";
+    const [lines, shades] = arraysOf(this.wires);
+    let vertex = 0;
+    for (let link = 0; link < this.links.length / 2; link++) {
+      const state = linkStates.length > 0 ? linkStates[link]! : 1;
+      if (state === 0) continue;
+      const plain = state > 1 ? this.states[(state - 2) % this.states.length]! : this.own;
+      for (const point of [this.links[2 * link]!, this.links[2 * link + 1]!]) {
+        put(lines, vertex, positions, 3 * point);
+        if (values) put(shades, vertex, map, colourAt(values[ofLinks ? link : point]!, range));
+        else put(shades, vertex, plain, 0);
+        vertex++;
+      }
+    }
+    this.wires.geometry.setDrawRange(0, vertex);
+    const [places, colours] = arraysOf(this.dots);
+    for (let point = 0; point < this.sizes.length; point++) {
+      put(places, point, positions, 3 * point);
+      if (values && !ofLinks) put(colours, point, map, colourAt(values[point]!, range));
+      else put(colours, point, this.own, 0);
+    }
+    for (const { geometry } of [this.wires, this.dots]) {
+      for (const name of ["position", "color"]) geometry.getAttribute(name).needsUpdate = true;
+    }
+  }
+
+  /** Sticks and balls. */
+  private fill(...[frame, values, of, range, map]: Painted): void {
     const { positions, linkStates } = frame;
     const count = this.links.length / 2;
     const ofLinks = of === "links";
@@ -90,11 +162,16 @@ export class Network {
   setCut(planes: Plane[]): void {
     this.sticks.setClipping(planes);
     this.balls.setClipping(planes);
+    for (const material of [this.wires.material, this.dots.material] as Material[]) material.clippingPlanes = planes;
   }
 
   dispose(): void {
     this.sticks.dispose();
     this.balls.dispose();
+    for (const thing of [this.wires, this.dots]) {
+      thing.geometry.dispose();
+      thing.material.dispose();
+    }
   }
 
   /** Radii of all points: those that are given, small ones for loose masses, the sticks' own where these meet. */
@@ -106,6 +183,25 @@ export class Network {
     });
     return sizes;
   }
+}
+
+/** Room for so many places and their colours. */
+function coloured(count: number): BufferGeometry {
+  const geometry = new BufferGeometry();
+  for (const name of ["position", "color"]) {
+    geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * Math.max(count, 1)), 3).setUsage(DynamicDrawUsage));
+  }
+  return geometry;
+}
+
+function arraysOf(thing: Wires | Dots): [Float32Array, Float32Array] {
+  const of = (name: string): Float32Array => thing.geometry.getAttribute(name).array as Float32Array;
+  return [of("position"), of("color")];
+}
+
+/** Three numbers. */
+function put(to: Float32Array, index: number, from: ArrayLike<number>, at: number): void {
+  for (let axis = 0; axis < 3; axis++) to[3 * index + axis] = from[at + axis]!;
 }
 
 function meanLength(links: Uint32Array, rest: Float32Array): number {
