@@ -1,9 +1,11 @@
 //! Studies: a family of runs of one scene, in parallel, into one SQLite file that tables and graphs are made from.
 //!
 //! A study is a TOML file (see [`Study`]). [`sweep`] makes the runs that the file does not hold yet, so that one that was
-//! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone.
+//! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone. Where a study has a `fit`, values are looked
+//! for instead for which a probe follows a measured curve ([`fit`]).
 
 mod database;
+pub mod fit;
 pub mod graphs;
 mod study;
 mod sweep;
@@ -12,6 +14,7 @@ mod table;
 use std::path::PathBuf;
 
 pub use database::Database;
+pub use fit::{Fit, Found, Search, Unknown};
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 use crate::SweepError;
+use crate::fit::Fit;
 
 /// A study, read from a TOML file.
 #[derive(Clone, Debug)]
@@ -19,6 +20,8 @@ pub struct Study {
     pub steps: Option<u64>,
     pub runs: Vec<Plan>,
     pub graphs: Vec<Graph>,
+    /// What is looked for, in the place of runs.
+    pub fit: Option<Fit>,
 }
 
 /// One run: what it has of its own.
@@ -45,7 +48,7 @@ pub struct Graph {
 /// Most runs of a study.
 const MOST_RUNS: usize = 100_000;
 
-const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs"];
+const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs", "fit"];
 const GRAPH_KEYS: &[&str] = &["title", "x", "y", "lines", "logarithmic"];
 
 impl Study {
@@ -72,7 +75,20 @@ impl Study {
         let folder = path.parent().unwrap_or(Path::new("."));
         let scene =
             folder.join(text_of(&document, "scene")?.ok_or_else(|| missing("scene", "a scene file"))?);
+        let fit = document.get("fit");
+        if let (Some(_), Some(other)) =
+            (fit, ["vary", "table", "graphs"].into_iter().find(|key| document.contains_key(*key)))
+        {
+            return Err(SweepError::value(other, "there beside `fit`", "a study of runs, or one of a fit"));
+        }
+        let mut table = Some(table);
+        let mut table = |path: &Path| match table.take() {
+            Some(table) => table(path),
+            None => unreachable!("a study names one file"),
+        };
+        let fit = fit.map(|fit| Fit::read(fit, folder, &mut table)).transpose()?;
         let runs = match (document.get("vary"), document.get("table")) {
+            (None, None) if fit.is_some() => Vec::new(),
             (Some(vary), None) => products(vary)?,
             (None, Some(_)) => {
                 let path = folder.join(text_of(&document, "table")?.unwrap_or_default());
@@ -82,7 +98,10 @@ impl Study {
                 return Err(SweepError::value("vary", "there beside `table`", "one of them"));
             }
             (None, None) => {
-                return Err(missing("vary", "a table of paths with lists of values, or a `table` file"));
+                return Err(missing(
+                    "vary",
+                    "a table of paths with lists of values, a `table` file, or a `fit`",
+                ));
             }
         };
         let steps = match document.get("steps") {
@@ -99,6 +118,7 @@ impl Study {
             steps,
             runs,
             graphs: graphs(&document)?,
+            fit,
         })
     }
 

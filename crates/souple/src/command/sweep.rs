@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use serde_json::json;
+use souple_io::Column;
 use souple_sweep::{
-    Database, Progress, Study, SweepError, Workers, fingerprints, graphs, sweep as make_runs, table_of,
+    Database, Fit, Progress, Search, Study, SweepError, Unknown, Workers, fingerprints, graphs,
+    sweep as make_runs, table_of,
 };
 use souple_table::counted;
 
@@ -40,7 +42,7 @@ impl From<SweepError> for Refusal {
         match error {
             SweepError::Value { value, expected, .. } => Self::request("study", value, expected, message),
             SweepError::Read { .. } | SweepError::Syntax { .. } => {
-                Self::request("study", "", "a study: TOML with `scene` and `vary`", message)
+                Self::request("study", "", "a study: TOML with `scene` and `vary`, or `fit`", message)
             }
             SweepError::Scene { settings, .. } => {
                 Self::request("study", settings, "values that the scene takes", message)
@@ -56,6 +58,9 @@ impl From<SweepError> for Refusal {
 
 pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
     let study = Study::read(&arguments.study)?;
+    if let Some(fit) = &study.fit {
+        return identify(arguments, &study, fit);
+    }
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("sqlite"));
     let mut database = Database::open(&out, &study.scene.display().to_string())?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
@@ -112,6 +117,77 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
         return Ok(End::Interrupted);
     }
     Ok(if summary.failed > 0 { End::Failed } else { End::Done })
+}
+
+/// Looks for the values of a fit, and writes the curve that they give beside the measured one.
+fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refusal> {
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("csv"));
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let interruption = interruption::heed();
+    let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
+    let search = Search { study, fit, count, stop: &interruption };
+    let meter = Meter::new("iterations", arguments.quiet);
+    let mut watch = |iterations: usize, residual: f64| {
+        meter.show(iterations as u64, fit.iterations as u64, &format!("residual {residual:.3e}"));
+    };
+    let found = search.run(&mut watch)?;
+    drop(meter);
+    let column =
+        |name: &str, index: usize| Column::new(name, found.curve.iter().map(|point| point[index]).collect());
+    let abscissa = fit.over.as_ref().map_or("time [s]", |(probe, _)| probe.as_str());
+    let columns = [column(abscissa, 0), column("measured", 1), column(&fit.probe, 2)];
+    souple_io::write_csv(&out, &columns)?;
+    let of_values = fit.unknowns.iter().zip(&found.values);
+    if arguments.json {
+        let value = |(unknown, (value, error)): (&Unknown, &(f64, Option<f64>))| {
+            json!({
+                "path": unknown.path,
+                "value": value,
+                "standard_error": error,
+                "unit": unknown.unit,
+                "is_at_bound": unknown.bounds.contains(value),
+                "setting": unknown.setting(*value),
+            })
+        };
+        print_json(&json!({
+            "title": study.title,
+            "scene": study.scene.display().to_string(),
+            "values": of_values.map(value).collect::<Vec<_>>(),
+            "residual": found.residual,
+            "explained": found.explained,
+            "iterations": found.iterations,
+            "runs": found.runs,
+            "converged": found.has_converged,
+            "points": found.curve.len(),
+            "files": [out.display().to_string()],
+        }));
+    } else if !arguments.quiet {
+        for (unknown, (value, error)) in of_values {
+            let error = error.map_or("unknown error".to_owned(), |error| format!("± {error:.2e}"));
+            let bound = if unknown.bounds.contains(value) { ", at a bound" } else { "" };
+            let unit = if unknown.unit.is_empty() { String::new() } else { format!(" {}", unknown.unit) };
+            print_line(format_args!("{} = {value:.9e} {error}{unit}{bound}", unknown.path));
+        }
+        print_line(format_args!(
+            "residual {:.3e}, {:.6} of the variance explained, {}, {}",
+            found.residual,
+            found.explained,
+            counted(found.iterations as u64, "iteration"),
+            counted(found.runs as u64, "run")
+        ));
+        print_line(format_args!("  {}", out.display()));
+    }
+    if interruption::is_interrupted() {
+        return Ok(End::Interrupted);
+    }
+    if !found.has_converged {
+        print_note(format_args!(
+            "warning: it ended after {} iterations, before steps were small enough",
+            found.iterations
+        ));
+        return Ok(End::Failed);
+    }
+    Ok(End::Done)
 }
 
 /// Columns under each other.
