@@ -61,6 +61,7 @@ fn world(name: &str, friction: bool, groups: [std::ops::Range<u32>; 2], listing:
         second,
         range: 0.12,
         friction,
+        fusible: None,
         timestep: TE,
         listing,
     });

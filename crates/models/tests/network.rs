@@ -10,7 +10,7 @@ use souple_math::Vec3;
 use souple_models::network::laws::{Piecewise, SpringDamper};
 use souple_models::network::{
     Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
-    Links, Listing, Making, Phase, Reach, Slide, Span,
+    Links, Listing, Making, Moment, Phase, Reach, Slide, Span,
 };
 use souple_table::{Value, Values};
 
@@ -137,12 +137,14 @@ fn battery_of_every_law() {
         for (length, before) in [(0.93, 0.931), (0.966, 0.964), (1.004, 1.003), (1.07, 1.072), (1.33, 1.331)]
         {
             let push = |length: f64, before: f64| {
-                law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).push
+                law.respond(&Reach { length, before, rest: 1.0 }, &Moment::of(0.0), &memory).push
             };
-            let stored = |length: f64| law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).stored;
+            let stored = |length: f64| {
+                law.respond(&Reach { length, before, rest: 1.0 }, &Moment::of(0.0), &memory).stored
+            };
             let step = 1e-6;
             let reach = Reach { length, before, rest: 1.0 };
-            let [now, past] = law.slopes(&reach, 0.0, &memory);
+            let [now, past] = law.slopes(&reach, &Moment::of(0.0), &memory);
             let numeric = |f: &dyn Fn(f64) -> f64| (f(step) - f(-step)) / (2.0 * step);
             let tolerance = 1e-6 * law.stiffest(1.0).max(1000.0);
             let differs = (now - numeric(&|e| push(length + e, before))).abs();
@@ -155,7 +157,7 @@ fn battery_of_every_law() {
                 assert!(differs < tolerance, "{} at {length}: -∂E/∂D off by {differs}", entry.name);
                 assert_eq!(past, 0.0, "{} looks back", entry.name);
             }
-            let heat = law.respond(&reach, 0.0, &memory).heat;
+            let heat = law.respond(&reach, &Moment::of(0.0), &memory).heat;
             // rounding of a product of forces of 1e4 N and steps of 1e-3 m
             assert!(heat >= -1e-12, "{} at {length} gives off {heat}", entry.name);
         }
@@ -286,7 +288,7 @@ fn characteristics_by_tests_and_by_absolute_values() {
     let kernel = InLanes(law);
     for i in 0..=200 {
         let length = 0.01 * f64::from(i);
-        let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, 0.0, &[]).push;
+        let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, &Moment::of(0.0), &[]).push;
         assert!((found - by_tests(length)).abs() < 1e-13, "at {length}");
     }
     let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], 0.0, 0.0).unwrap_err().to_string();
@@ -438,6 +440,7 @@ fn crowds_are_all_pairs() {
                 second: second.clone(),
                 range,
                 friction: None,
+                fusible: None,
                 timestep: TE,
                 listing: Listing::State,
             });

@@ -120,6 +120,7 @@ impl Course {
                 }
             }
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+            session.watch_energy()?;
             let last = step == steps;
             let write_clock = Instant::now();
             if last {

@@ -15,6 +15,7 @@ mod in_time;
 mod in_time_report;
 mod links;
 mod machine;
+mod monitor;
 mod output;
 mod picture;
 mod recording;
@@ -44,6 +45,7 @@ pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
 pub use in_time::{InTime, TimeError, WorldToll, run_in_time};
 pub use links::links_of;
 pub use machine::{binary, instruction_set, peak_bytes};
+pub use monitor::{Grown, Monitor};
 pub use output::{MANIFEST, OutputError};
 pub use recording::{Divergence, Hashed, Recording, RecordingError};
 pub use report::{AroundSteps, Report, SkinChange, Status, counts};
@@ -106,6 +108,8 @@ pub enum Control {
 pub enum RunError {
     #[error("the snapshot does not fit the scene: {0}")]
     Snapshot(#[from] souple_engine::SnapshotError),
+    #[error("energy grew without work: {0}")]
+    Grown(String),
     #[error("command before period {period}: {error}")]
     Edit { period: u64, error: souple_engine::EditError },
     #[error("change before period {period}: {error}")]

@@ -13,6 +13,7 @@ use souple_scene::{
 use crate::failure::Failure;
 use crate::frames::solid_of;
 use crate::machine::peak_bytes;
+use crate::monitor::{Grown, Monitor};
 use crate::recording::{Recording, add_hash};
 use crate::report::{AroundSteps, Report, SkinChange, Status, attachments, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
@@ -33,6 +34,8 @@ pub struct Session {
     /// Values of the scene that may be set, see [`Session::change`].
     pub adjustables: Vec<Adjustable>,
     pub warnings: Vec<String>,
+    /// What watches its energy, where the scene asks for it.
+    pub monitor: Option<Monitor>,
     /// Why it cannot go on.
     pub failure: Option<Failure>,
     pub first_step: u64,
@@ -109,13 +112,13 @@ impl Session {
             first_step: world.state().period,
             energy_at_start: world.energy(),
             momentum_at_start: world.momentum(),
-            world,
             bodies,
             skins,
             hands,
             probes,
             adjustables,
             warnings,
+            monitor: run.monitor.map(|spec| Monitor::new(spec, &mut world)),
             failure: None,
             around: AroundSteps::default(),
             clock: Instant::now(),
@@ -124,6 +127,7 @@ impl Session {
             skin_changes: Vec::new(),
             places: options.places.clone(),
             solver: StepReport::default(),
+            world,
         })
     }
 
@@ -151,6 +155,22 @@ impl Session {
                 Stepped::Refused
             }
         }
+    }
+
+    /// Looks at its energy, where that is watched, and warns once where it grows.
+    ///
+    /// # Errors
+    /// It grows without work, and the run is to stop there.
+    pub fn watch_energy(&mut self) -> Result<(), RunError> {
+        let Some(monitor) = &mut self.monitor else { return Ok(()) };
+        let Some(message) = monitor.look(&mut self.world, &self.bodies).map(Grown::message) else {
+            return Ok(());
+        };
+        if monitor.stops() {
+            return Err(RunError::Grown(message));
+        }
+        self.warnings.push(format!("energy grew without work: {message}"));
+        Ok(())
     }
 
     /// Notes the skins that count more changes of their topology than before.

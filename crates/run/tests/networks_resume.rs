@@ -33,6 +33,13 @@ friction = { static = 0.6, kinetic = 0.5, stiffness = 800, damping = 0.5, hook_v
 of = ["grains", "ground"]
 law = { name = "finite_state", states = { free = "max(0, 2000 * (0.1 - D))", stuck = "2000 * (0.1 - D) - V" }, transitions = { "free -> stuck" = "D < 0.099", "stuck -> free" = "D > 0.106" } }
 range = 0.12
+[networks.net.masses.wax]
+lattice = { origin = [0, 6, 0.06], spacing = 0.1, counts = [3, 3, 3] }
+mass = 0.05
+[[networks.net.crowds]]
+of = ["wax"]
+law = { name = "cohesion", hard = 0.095, distance = 0.1, peak = 0.105, range = 0.12, repulsion = 2000, cohesion = 30, damping = 1 }
+fusible = { capacity = 2, conductance = 1, softening = 300, melting = 320, stiffness = 300, damping = 0.2, reach = 0.11, temperature = "290 + 300 * (z - 0.06)", heating = "if(t < 0.2, 150, -150)" }
 [shapes.wall]
 shape = { name = "plane", point = [-0.06, 0, 0], normal = [1, 0, 0.2] }
 [[contacts]]

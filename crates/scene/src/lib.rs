@@ -26,7 +26,7 @@ mod values;
 pub use adjust::Adjustable;
 pub use compile::{LawInfo, NetworkInfo};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
-pub use measure::{ContourInfo, Measurement, ProbeInfo};
+pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
 pub use scene::{
     BodyInfo, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file,

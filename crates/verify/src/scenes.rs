@@ -4,6 +4,7 @@
 pub const SCENES: &[(&str, &str)] = &[
     ("adaptive_bar", include_str!("../../../scenes/adaptive_bar/scene.toml")),
     ("agglomerate", include_str!("../../../scenes/agglomerate/scene.toml")),
+    ("arm", include_str!("../../../scenes/arm/scene.toml")),
     ("ball_on_square", include_str!("../../../scenes/ball_on_square/scene.toml")),
     ("bar_bends_by_itself", include_str!("../../../scenes/bar_bends_by_itself/scene.toml")),
     ("block_on_springs", include_str!("../../../scenes/block_on_springs/scene.toml")),
@@ -44,6 +45,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("harmonic_cube", include_str!("../../../scenes/harmonic_cube/scene.toml")),
     ("harmonic_sheet", include_str!("../../../scenes/harmonic_sheet/scene.toml")),
     ("heap_collapses", include_str!("../../../scenes/heap_collapses/scene.toml")),
+    ("heat", include_str!("../../../scenes/heat/scene.toml")),
     ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
     ("joined_halves", include_str!("../../../scenes/joined_halves/scene.toml")),
@@ -130,6 +132,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("two_slopes", include_str!("../../../scenes/two_slopes/scene.toml")),
     ("vibrating_modes", include_str!("../../../scenes/vibrating_modes/scene.toml")),
     ("wall_cube", include_str!("../../../scenes/wall_cube/scene.toml")),
+    ("wax", include_str!("../../../scenes/wax/scene.toml")),
     ("weight_on_string", include_str!("../../../scenes/weight_on_string/scene.toml")),
 ];
 

@@ -73,7 +73,7 @@ pub fn enclosed_area(lines: &[Vec<Place>]) -> f64 {
     lines.iter().map(|line| signed_area(line)).sum::<f64>().abs()
 }
 
-/// How far the places of one contour are from the lines of another, at most [m].
+/// How far the places of one contour are from the lines of another, at most [m]; no number where either has none.
 pub fn farthest(lines: &[Vec<Place>], other: &[Vec<Place>]) -> f64 {
     let to_segment = |p: Place, [a, b]: [Place; 2]| {
         let (along, from) = (minus(b, a), minus(p, a));
@@ -83,6 +83,9 @@ pub fn farthest(lines: &[Vec<Place>], other: &[Vec<Place>]) -> f64 {
         length(minus(from, [along[0] * t, along[1] * t]))
     };
     let segments: Vec<[Place; 2]> = other.iter().flat_map(|line| segments(line)).collect();
+    if lines.iter().all(Vec::is_empty) || segments.is_empty() {
+        return f64::NAN;
+    }
     let (mut most, mut last) = (0.0_f64, 0);
     for place in lines.iter().flatten() {
         // from the segment that was near the place before: one no farther than the farthest known is enough
@@ -426,6 +429,7 @@ mod tests {
         let (lines, trace) = (frontier.lines(&two), scan.lines(&two));
         assert!((enclosed_area(&lines) / area - 1.0).abs() < 1e-2, "{}", enclosed_area(&lines));
         assert!((enclosed_area(&trace) / area - 1.0).abs() < 2e-2, "{}", enclosed_area(&trace));
+        assert!(farthest(&trace, &[]).is_nan() && farthest(&[], &lines).is_nan());
         assert!(farthest(&trace, &lines) < 0.1, "{}", farthest(&trace, &lines));
         let apart = [[0.0, 0.0], [5.0, 0.0]];
         assert_eq!([frontier.lines(&apart).len(), scan.lines(&apart).len()], [2, 2]);

@@ -18,8 +18,9 @@ use super::crowd_grid::Grid;
 use super::crowd_list::{Groups, Neighbours};
 use super::crowd_pass::{Evaluation, Known, Pass, Task, key};
 use super::friction::{Friction, Hook, Phase};
+use super::fusible::{Bond, Fusible, MOLTEN};
 use super::kernel::LinkKernel;
-use super::law::{Reach, Response};
+use super::law::{Moment, Reach, Response};
 use super::pair_tangent::{add_change, add_pair_blocks};
 
 /// Numbers of a pair that belong to friction; those of the law follow.
@@ -39,6 +40,8 @@ pub struct CrowdDescription {
     /// Beyond it there is no force [m].
     pub range: f64,
     pub friction: Option<Friction>,
+    /// Bonds beside the law that melt and set, and the temperatures of the masses.
+    pub fusible: Option<Fusible>,
     /// Of the system [s].
     pub timestep: f64,
     pub listing: Listing,
@@ -82,6 +85,8 @@ struct Work {
     found: Vec<Vec<[u32; 2]>>,
     /// On the first balls of pairs [N].
     forces: Vec<Vec3>,
+    /// Into each mass from its neighbours [W].
+    flows: Vec<f64>,
     list: Neighbours,
     pass: Pass,
 }
@@ -97,8 +102,96 @@ const SEARCHED_TOGETHER: usize = 512;
 
 impl Crowd {
     pub fn new(description: CrowdDescription) -> Self {
-        assert!(description.law.memory_len() <= PAIR_MEMORY, "laws of pairs remember few numbers");
+        let bond = usize::from(description.fusible.is_some());
+        assert!(description.law.memory_len() + bond <= PAIR_MEMORY, "laws of pairs remember few numbers");
         Self(description)
+    }
+
+    /// Numbers of a pair that the law remembers, and its bond behind them.
+    fn remembered_len(&self) -> usize {
+        self.0.law.memory_len() + usize::from(self.0.fusible.is_some())
+    }
+
+    /// Masses of both groups.
+    fn mass_count(&self) -> usize {
+        self.0.first.len() + if self.groups().is_one() { 0 } else { self.0.second.len() }
+    }
+
+    /// The number of a row among the masses of both groups.
+    fn mass_of(&self, row: u32) -> usize {
+        let CrowdDescription { first, second, .. } = &self.0;
+        if first.contains(&row) {
+            (row - first.start) as usize
+        } else {
+            first.len() + (row - second.start) as usize
+        }
+    }
+
+    /// Temperature of the mass of a row, of a crowd that is fusible and has it, by its memory [K].
+    pub fn temperature(&self, row: u32, memory: &[f64]) -> Option<f64> {
+        let CrowdDescription { first, second, fusible, .. } = &self.0;
+        let is_here = fusible.is_some() && (first.contains(&row) || second.contains(&row));
+        is_here.then(|| memory[1 + self.mass_of(row)])
+    }
+
+    /// Calls `visit` for the ends of every bond that has not melted.
+    pub fn visit_bonds(&self, at: &Configuration, mut visit: impl FnMut([u32; 2])) {
+        let Some(fusible) = &self.0.fusible else { return };
+        self.visit_standing(at, &mut Work::default(), |standing, memory| {
+            if self.bond(fusible, standing, memory, at).rest != MOLTEN {
+                visit(standing.pair);
+            }
+        });
+    }
+
+    /// `Te (Σ g + e)/c` where it is most, with the mass: beyond 1 temperatures swing from step to step. `None` where nothing
+    /// is fusible.
+    pub fn heat_share(&self, positions: &[Vec3]) -> Option<(f64, u32)> {
+        let fusible = self.0.fusible.as_ref()?;
+        let mut neighbours = vec![0; self.mass_count()];
+        let mut list = Neighbours::default();
+        list.bring_up_to_date(self.groups(), positions, self.0.range);
+        for (ball, row) in self.0.first.clone().enumerate() {
+            let is_near = |other: &&u32| {
+                (positions[row as usize] - positions[**other as usize]).length() < fusible.reach
+            };
+            for other in list.others(ball).iter().filter(is_near) {
+                neighbours[ball] += 1;
+                neighbours[self.mass_of(*other)] += 1;
+            }
+        }
+        let second = if self.groups().is_one() { 0..0 } else { self.0.second.clone() };
+        let share = |row: u32| {
+            let place = positions[row as usize];
+            (fusible.share(self.0.timestep, neighbours[self.mass_of(row)], place), row)
+        };
+        self.0.first.clone().chain(second).map(share).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The bond of a pair.
+    fn bond(&self, fusible: &Fusible, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Bond {
+        let [a, b] = standing.pair.map(|row| at.memory[1 + self.mass_of(row)]);
+        fusible.bond(&standing.reach, 0.5 * (a + b), memory[HOOK + self.0.law.memory_len()])
+    }
+
+    /// Moves temperatures on by a step.
+    fn conduct(&self, at: &Configuration, work: &mut Work, memory: &mut [f64]) {
+        let Some(fusible) = &self.0.fusible else { return };
+        let mut flows = std::mem::take(&mut work.flows);
+        flows.clear();
+        flows.resize(self.mass_count(), 0.0);
+        self.visit_standing(at, work, |standing, _| {
+            if standing.reach.length < fusible.reach {
+                let [a, b] = standing.pair.map(|row| self.mass_of(row));
+                let flow = fusible.conductance * (at.memory[1 + b] - at.memory[1 + a]);
+                flows[a] += flow;
+                flows[b] -= flow;
+            }
+        });
+        let second = if self.groups().is_one() { 0..0 } else { self.0.second.clone() };
+        let places = self.0.first.clone().chain(second).map(|row| at.positions[row as usize]);
+        fusible.advance(self.0.timestep, at.time, places, &flows, &mut memory[1..]);
+        work.flows = flows;
     }
 
     /// Beyond it there is no force [m].
@@ -115,7 +208,8 @@ impl Crowd {
     pub fn stiffest(&self) -> f64 {
         let hook =
             self.0.friction.as_ref().map_or(0.0, |friction| friction.stiffness + 2.0 * friction.damping);
-        self.0.law.stiffest(self.0.range).max(hook)
+        let bond = self.0.fusible.as_ref().map_or(0.0, Fusible::stiffest);
+        (self.0.law.stiffest(self.0.range) + bond).max(hook)
     }
 
     fn groups(&self) -> Groups<'_> {
@@ -138,21 +232,21 @@ impl Crowd {
     }
 
     /// `None` out of range.
-    fn act(&self, standing: &Standing, memory: &[f64; 8], time: f64) -> Option<Act> {
+    fn act(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
         let Standing { d, before, reach, .. } = *standing;
         if reach.length >= self.0.range {
             return None;
         }
         let mut next = *memory;
         let own = self.law_memory(memory);
-        let Response { push, stored, heat } = self.0.law.respond(&reach, time, own);
+        let Response { mut push, stored, heat } = self.0.law.respond(&reach, &Moment::of(at.time), own);
         let u = d.try_normalised().or(before.try_normalised()).unwrap_or(Vec3::X);
         let mut energy = Energy { stored, dissipated: heat };
         let mut across = Vec3::ZERO;
         if let Some(friction) = &self.0.friction {
             // the elastic part alone presses
             let still = Reach { before: reach.length, ..reach };
-            let normal = self.0.law.respond(&still, time, own).push;
+            let normal = self.0.law.respond(&still, &Moment::of(at.time), own).push;
             let hook = Hook::from_numbers(std::array::from_fn(|i| memory[i]));
             let grip = friction.grip(hook, d, before, normal);
             across = grip.force;
@@ -160,36 +254,42 @@ impl Crowd {
             energy.dissipated += grip.heat;
             next[..HOOK].copy_from_slice(&grip.next.numbers());
         }
+        if let Some(fusible) = &self.0.fusible {
+            let bond = self.bond(fusible, standing, memory, at);
+            push += bond.push;
+            energy.stored += bond.stored;
+            energy.dissipated += bond.heat;
+            next[HOOK + self.0.law.memory_len()] = bond.rest;
+        }
         Some(Act { axial: u * push, across, energy, memory: next })
     }
 
     /// The same of a pair in State.
     fn act_of(&self, pair: &Pair, at: &Configuration) -> Option<Act> {
-        self.act(&self.standing([pair.a as u32, pair.b as u32], at), &pair.memory, at.time)
+        self.act(&self.standing([pair.a as u32, pair.b as u32], at), &pair.memory, at)
     }
 
     /// Numbers that State has of a pair that is not listed there: of a hook where it began, before those of the law.
     fn own_len(&self) -> usize {
-        let law = self.0.law.memory_len();
-        match (&self.0.friction, law) {
-            (None, law) => law,
+        match (&self.0.friction, self.remembered_len()) {
+            (None, own) => own,
             // who is there sticks
             (Some(_), 0) => HOOK - 1,
-            (Some(_), law) => HOOK + law,
+            (Some(_), own) => HOOK + own,
         }
     }
 
     /// What a pair remembers, from the numbers that State has of it.
     fn recalled(&self, known: Option<&[f64]>, length: f64) -> [f64; 8] {
-        let (mut memory, law) = ([0.0; 8], self.0.law.memory_len());
+        let (mut memory, law, own) = ([0.0; 8], self.0.law.memory_len(), self.remembered_len());
         match known {
             None => {
                 if law > 0 {
                     self.0.law.begin(self.0.range, length, &mut memory[HOOK..HOOK + law]);
                 }
             }
-            Some(numbers) if self.0.friction.is_none() => memory[HOOK..HOOK + law].copy_from_slice(numbers),
-            Some(numbers) if law > 0 => memory[..HOOK + law].copy_from_slice(numbers),
+            Some(numbers) if self.0.friction.is_none() => memory[HOOK..HOOK + own].copy_from_slice(numbers),
+            Some(numbers) if own > 0 => memory[..HOOK + own].copy_from_slice(numbers),
             Some(&[x, y, z]) => {
                 let hook = Hook { phase: Phase::Stick, began: Vec3::new(x, y, z) };
                 memory[..HOOK].copy_from_slice(&hook.numbers());
@@ -199,20 +299,20 @@ impl Crowd {
         memory
     }
 
-    /// A pair of a law with memory in a pass: the force on the first ball.
+    /// A pair that is not plain in a pass: the force on the first ball.
     fn act_alone(
         &self,
-        time: f64,
+        at: &Configuration,
         (pair, ways): ([u32; 2], [Vec3; 2]),
         known: Option<&[f64]>,
         task: &mut Task,
     ) -> Vec3 {
         let standing = self.between(pair, ways);
         let memory = self.recalled(known, standing.reach.length);
-        let Some(act) = self.act(&standing, &memory, time) else { return Vec3::ZERO };
+        let Some(act) = self.act(&standing, &memory, at) else { return Vec3::ZERO };
         task.heat += act.energy.dissipated;
         let own = if self.0.friction.is_some() { 0 } else { HOOK };
-        task.keep(pair, &act.memory[own..HOOK + self.0.law.memory_len()]);
+        task.keep(pair, &act.memory[own..HOOK + self.remembered_len()]);
         act.axial + act.across
     }
 
@@ -229,9 +329,10 @@ impl Crowd {
             range: *range,
             timestep: *timestep,
             kept_len: self.own_len(),
+            are_plain: self.remembered_len() == 0,
         };
         let act = |pair, ways, known: Option<&[f64]>, task: &mut Task| {
-            self.act_alone(at.time, (pair, ways), known, task)
+            self.act_alone(at, (pair, ways), known, task)
         };
         work.pass.run(&with, at, out, &act);
     }
@@ -274,13 +375,20 @@ impl Crowd {
             let (Some(n), true) = (d.try_normalised(), reach.length < self.0.range) else { return };
             let m = before.try_normalised().unwrap_or(n);
             let own = self.law_memory(memory);
-            let push = self.0.law.respond(&reach, at.time, own).push;
-            let [now, past] = self.0.law.slopes(&reach, at.time, own);
+            let pressed = self.0.law.respond(&reach, &Moment::of(at.time), own).push;
+            let ([mut now, mut past], mut push) =
+                (self.0.law.slopes(&reach, &Moment::of(at.time), own), pressed);
+            if let Some(fusible) = &self.0.fusible {
+                let bond = self.bond(fusible, standing, memory, at);
+                push += bond.push;
+                now += bond.slopes[0];
+                past += bond.slopes[1];
+            }
             let side = push / reach.length;
             let mut position = n.outer(n) * (now - side) + Mat3::IDENTITY * side + n.outer(m) * past;
             let mut velocity = n.outer(m) * (-self.0.timestep * past);
             if let Some(friction) = &self.0.friction
-                && push > 0.0
+                && pressed > 0.0
             {
                 // the hook as it is while it sticks
                 let across = Mat3::IDENTITY - n.outer(n);
@@ -298,7 +406,8 @@ impl Force for Crowd {
     }
 
     fn declaration(&self) -> Declaration {
-        let conservative = self.0.law.is_conservative() && self.0.friction.is_none();
+        let is_plain = self.0.friction.is_none() && self.0.fusible.is_none();
+        let conservative = self.0.law.is_conservative() && is_plain;
         Declaration {
             conservative,
             velocity_terms: !conservative,
@@ -309,8 +418,16 @@ impl Force for Crowd {
         }
     }
 
+    /// The heat given off, then the temperatures of the masses.
     fn memory_len(&self) -> usize {
-        1
+        1 + if self.0.fusible.is_some() { self.mass_count() } else { 0 }
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        memory[0] = 0.0;
+        if let Some(fusible) = &self.0.fusible {
+            memory[1..].copy_from_slice(&fusible.temperatures);
+        }
     }
 
     fn new_scratch(&self) -> Scratch {
@@ -320,7 +437,7 @@ impl Force for Crowd {
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
         let mut stored = 0.0;
         self.visit_standing(at, Work::of(scratch), |standing, memory| {
-            stored += self.act(standing, memory, at.time).map_or(0.0, |act| act.energy.stored);
+            stored += self.act(standing, memory, at).map_or(0.0, |act| act.energy.stored);
         });
         Energy { stored, dissipated: at.memory[0] }
     }
@@ -376,6 +493,9 @@ impl Force for Crowd {
             for (pair, next) in at.pairs[first..].iter().zip(pairs) {
                 let Some(act) = self.act_of(pair, at) else {
                     next.memory[..HOOK].copy_from_slice(&Hook::FREE.numbers());
+                    if self.0.fusible.is_some() {
+                        next.memory[HOOK + self.0.law.memory_len()] = MOLTEN;
+                    }
                     continue;
                 };
                 next.memory = act.memory;
@@ -383,6 +503,7 @@ impl Force for Crowd {
             }
             heat
         });
+        self.conduct(at, &mut Work::default(), memory);
     }
 
     fn kept_len(&self) -> Option<usize> {
@@ -395,8 +516,10 @@ impl Force for Crowd {
         }
     }
 
-    fn advance_kept(&self, _: &Configuration, scratch: &mut Scratch, memory: &mut [f64], kept: &mut Kept) {
-        memory[0] += Work::of(scratch).pass.keep(kept);
+    fn advance_kept(&self, at: &Configuration, scratch: &mut Scratch, memory: &mut [f64], kept: &mut Kept) {
+        let work = Work::of(scratch);
+        memory[0] += work.pass.keep(kept);
+        self.conduct(at, work, memory);
     }
 
     fn accepts_key(&self, key: u64) -> bool {
@@ -427,9 +550,9 @@ impl Force for Crowd {
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
-        let Some(Work { grid, found, forces, list, pass }) = scratch.downcast_ref() else { return 0 };
+        let Some(Work { grid, found, forces, flows, list, pass }) = scratch.downcast_ref() else { return 0 };
         let found: usize = found.iter().map(|list| 8 * list.capacity()).sum();
-        let own = grid.bytes() + found + size_of::<Vec3>() * forces.capacity();
+        let own = grid.bytes() + found + size_of::<Vec3>() * forces.capacity() + 8 * flows.capacity();
         own + list.bytes() + pass.bytes()
     }
 
@@ -488,7 +611,7 @@ impl Force for Crowd {
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
         self.visit_standing(at, &mut Work::default(), |standing, memory| {
-            let Some(act) = self.act(standing, memory, at.time) else { return };
+            let Some(act) = self.act(standing, memory, at) else { return };
             visit(&ContactPoint {
                 row: standing.pair[0],
                 against: &[(standing.pair[1], 1.0)],

@@ -207,11 +207,13 @@ pub struct Evaluation<'a> {
     pub timestep: f64,
     /// Numbers of an entry.
     pub kept_len: usize,
+    /// Pairs do what the law and friction say and nothing else, and the law has no memory: they are looked at together.
+    pub are_plain: bool,
 }
 
 impl Pass {
-    /// Evaluates all pairs and adds their forces to `out`; `act(pair, ways, known numbers, task)` does where the law has a
-    /// memory.
+    /// Evaluates all pairs and adds their forces to `out`; `act(pair, ways, known numbers, task)` does where they are
+    /// not plain.
     pub fn run(
         &mut self,
         with: &Evaluation,
@@ -219,7 +221,7 @@ impl Pass {
         mut out: Option<&mut [Vec3]>,
         act: &(impl Fn([u32; 2], [Vec3; 2], Option<&[f64]>, &mut Task) -> Vec3 + Sync),
     ) {
-        let Evaluation { groups, list, law, friction, range, timestep, kept_len } = *with;
+        let Evaluation { groups, list, law, friction, range, timestep, kept_len, are_plain } = *with;
         let (count, first_row) = (groups.first.len(), groups.first.start);
         let together = count.div_ceil(TASKS).max(1).next_multiple_of(TOGETHER);
         self.tasks.resize_with(count.div_ceil(together), Task::default);
@@ -236,7 +238,7 @@ impl Pass {
                 let own = start..(start + AT_HAND).min(balls.end);
                 let mut batch = std::mem::take(&mut task.batch);
                 batch.gather((own, first_row), (list, range, timestep), at, (first_slot, forces));
-                if law.memory_len() == 0 {
+                if are_plain {
                     task.batch = batch;
                     task.act_together(at, (law, range, friction), &mut known, forces);
                     continue;
@@ -399,6 +401,7 @@ mod tests {
                 range: 0.6,
                 timestep: 1e-3,
                 kept_len: 0,
+                are_plain: true,
             };
             let at = Configuration {
                 positions: &positions,

@@ -17,6 +17,8 @@ const ASKED_MAX: f64 = 2e8;
 const SHEET_PITCH: f64 = 0.25;
 /// Moves onto the sheet: one where the shape tells distances.
 const MOVES: usize = 4;
+/// Of a diameter: how finely gaps are looked for.
+const FINEST: f64 = 1.0 / 256.0;
 /// Of a diameter: balls of a close packing are that far apart, but for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
@@ -31,6 +33,17 @@ pub struct Filling {
     pub depth: f64,
     /// Where centres may be.
     pub bounds: BoundingBox,
+    pub gaps: Gaps,
+}
+
+/// What becomes of places on the surface where no other ball of the sheet has room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gaps {
+    /// They may be up to `√5 - 1` radii from the nearest ball.
+    #[default]
+    Left,
+    /// Those that are farther than a radius get a ball below the sheet.
+    Closed,
 }
 
 /// Why there is no filling.
@@ -57,6 +70,9 @@ impl Filling {
             return Err(FillingError::TooMany(asked));
         }
         let mut balls = self.sheet(shape, pitch);
+        if self.gaps == Gaps::Closed {
+            self.close_gaps(shape, pitch, &mut balls);
+        }
         self.pack(shape, &mut balls);
         if balls.places.is_empty() { Err(FillingError::NoRoom) } else { Ok(balls.places) }
     }
@@ -92,6 +108,71 @@ impl Filling {
             }
         }
         balls
+    }
+
+    /// Puts a ball below the sheet wherever a place of the surface is farther than a radius `R` from all balls. Above a place of the sheet
+    /// that is `a R` from the nearest of its balls the surface is `√(1 + a²) - 1` radii from it; a ball that touches those around the place is
+    /// `√(4 - a²)` radii from the surface. Both are 1 at `a = √3`: the one or the other is never more.
+    fn close_gaps(&self, shape: &dyn Shape, pitch: f64, balls: &mut Balls) {
+        let widest = 0.75_f64.sqrt() * self.spacing;
+        let mut seeds: Vec<(f64, Vec3)> = self
+            .candidates(shape, pitch)
+            .into_iter()
+            .map(|place| (balls.distance(place), place))
+            // a candidate is within a pitch of what is widest
+            .filter(|(apart, _)| *apart > widest - pitch)
+            .collect();
+        seeds.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // where the search has ended before: those that begin beside it would end there too
+        let (mut ends, mut known) = (Vec::<Vec3>::new(), Cells::new(self.spacing));
+        for (_, seed) in seeds {
+            let mut is_known = balls.distance(seed) <= widest - pitch;
+            known.visit(seed, 1, |end| is_known |= (ends[end as usize] - seed).length() < pitch);
+            if is_known {
+                continue;
+            }
+            let (apart, place) = self.widest_near(shape, seed, pitch, balls);
+            known.add(place, ends.len() as u32);
+            ends.push(place);
+            if apart <= widest {
+                continue;
+            }
+            let Some(nearest) = shape.nearest(place, f64::INFINITY) else { continue };
+            // the first that has room, on the way in
+            let steps = (1.0 / FINEST).ceil() as usize;
+            for step in 0..=steps {
+                let deep = place - nearest.normal * (step as f64 * FINEST * self.spacing);
+                let BoundingBox { low, high } = self.bounds;
+                let is_in = deep == deep.max_components(low).min_components(high);
+                if !is_in || !self.is_inside(shape, deep, -1e-6 * self.spacing) || balls.add(deep) {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// The place of the sheet near a place of it that is farthest from all balls, and how far: up the slope of the distance,
+    /// by ever shorter steps.
+    fn widest_near(&self, shape: &dyn Shape, seed: Vec3, pitch: f64, balls: &Balls) -> (f64, Vec3) {
+        let BoundingBox { low, high } = self.bounds;
+        let (mut best, mut step) = ((balls.distance(seed), seed), pitch);
+        while step > FINEST * self.spacing {
+            let around = (0..27).map(|n| {
+                Vec3::new((n % 3) as f64, (n / 3 % 3) as f64, (n / 9) as f64) - Vec3::new(1.0, 1.0, 1.0)
+            });
+            let tried = around.filter_map(|way| {
+                let place = self.moved(shape, best.1 + way * step)?.max_components(low).min_components(high);
+                // no farther from where it began than the next candidates are
+                let is_on = (place - seed).length() <= 2.0 * pitch
+                    && self.is_inside(shape, place, -1e-6 * self.spacing);
+                is_on.then(|| (balls.distance(place), place))
+            });
+            match tried.max_by(|a, b| a.0.total_cmp(&b.0)) {
+                Some(better) if better.0 > best.0 => best = better,
+                _ => step *= 0.5,
+            }
+        }
+        best
     }
 
     /// Places at the depth of the inset, closer to each other than balls are.
@@ -207,6 +288,13 @@ impl Balls {
         Self { places: Vec::new(), cells: Cells::new(spacing) }
     }
 
+    /// From the nearest ball; a diameter at most.
+    fn distance(&self, place: Vec3) -> f64 {
+        let mut least = self.cells.size;
+        self.cells.visit(place, 1, |other| least = least.min((self.places[other as usize] - place).length()));
+        least
+    }
+
     /// Whether there was room.
     fn add(&mut self, place: Vec3) -> bool {
         let closest = NEARLY * self.cells.size;
@@ -235,7 +323,8 @@ mod tests {
         let spacing = 0.1;
         let sphere = Sphere::new(Vec3::new(0.3, 0.1, -0.2), 0.53);
         let bounds = BoundingBox::of([sphere.centre]).grown(sphere.radius);
-        let filling = Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds };
+        let filling =
+            Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds, gaps: Gaps::Left };
         let balls = filling.fill(&sphere).unwrap();
         let mut widest: f64 = 0.0;
         for n in 0..2000 {
@@ -257,12 +346,40 @@ mod tests {
         assert!(share > 0.4, "{share}");
     }
 
+    /// With gaps closed no place on the surface is farther than a radius from a ball, whatever the size of the balls.
+    #[test]
+    fn gaps_are_closed() {
+        let mut widest = [0.0_f64; 2];
+        for spacing in [0.1, 0.13, 0.17, 0.21] {
+            let sphere = Sphere::new(Vec3::new(0.3, 0.1, -0.2), 0.53);
+            let bounds = BoundingBox::of([sphere.centre]).grown(sphere.radius);
+            for (gaps, widest) in [Gaps::Left, Gaps::Closed].into_iter().zip(&mut widest) {
+                let filling = Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds, gaps };
+                let balls = filling.fill(&sphere).unwrap();
+                for n in 0..20_000 {
+                    let z = 1.0 - (2.0 * f64::from(n) + 1.0) / 20_000.0;
+                    let (turn, r) = (2.399_963 * f64::from(n), (1.0 - z * z).sqrt());
+                    let place = sphere.centre + Vec3::new(r * turn.cos(), r * turn.sin(), z) * sphere.radius;
+                    let gap = balls.iter().map(|ball| (*ball - place).length()).fold(f64::INFINITY, f64::min);
+                    *widest = widest.max(gap / (0.5 * spacing) - 1.0);
+                }
+                for (n, ball) in balls.iter().enumerate() {
+                    assert!(balls[..n].iter().all(|other| (*other - *ball).length() >= NEARLY * spacing));
+                }
+            }
+        }
+        // on a sphere the surface is farther from the sheet by its curvature: R/ϱ of the radius at most
+        let [left, closed] = widest;
+        assert!(closed < left && closed <= 1.0, "{left} and {closed} radii");
+    }
+
     /// A flat box is filled by a plane of balls; a shell is as deep as it is asked to be; what has no room is told.
     #[test]
     fn planes_shells_and_crumbs() {
         let cuboid = Cuboid { centre: Vec3::ZERO, half_size: Vec3::new(1.0, 1.0, 1.0), axes: Mat3::IDENTITY };
         let flat = BoundingBox { low: Vec3::new(-1.0, 0.0, -1.0), high: Vec3::new(1.0, 0.0, 1.0) };
-        let filling = Filling { spacing: 0.1, inset: 0.05, depth: f64::INFINITY, bounds: flat };
+        let filling =
+            Filling { spacing: 0.1, inset: 0.05, depth: f64::INFINITY, bounds: flat, gaps: Gaps::Left };
         let balls = filling.fill(&cuboid).unwrap();
         assert!(balls.iter().all(|ball| ball.y == 0.0) && balls.len() > 350, "{}", balls.len());
         let shell = Filling { depth: 0.1, ..filling }.fill(&cuboid).unwrap();

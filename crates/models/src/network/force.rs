@@ -9,7 +9,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use super::kernel::{LinkKernel, Moving};
-use super::law::Reach;
+use super::law::{AsksFor, Moment, Reach};
 use super::layout::{Arrangement, Ends, LANES, Layout, Part};
 use super::pair_tangent::{add_change, add_pair_blocks};
 use super::span::{Known, OnAxis, Place, Projected, Span, axis_of};
@@ -87,6 +87,7 @@ pub struct LinkStance {
 struct Standing {
     rows: [u32; 2],
     reach: Reach,
+    moment: Moment,
     /// `(P1 - P2)/D` now and a step before; `None` where there is no direction.
     directions: Option<[Vec3; 2]>,
 }
@@ -167,6 +168,11 @@ impl Links {
         self.law.stiffest(rest)
     }
 
+    /// Whether the law asks where ends are.
+    pub fn asks_for(&self) -> AsksFor {
+        self.law.asks_for()
+    }
+
     fn moving<'a>(&self, at: &Configuration<'a>) -> Moving<'a> {
         Moving { positions: at.positions, velocities: at.velocities, time: at.time, timestep: self.timestep }
     }
@@ -214,7 +220,15 @@ impl Links {
             (_, Some(n), Some(m)) => Some([n, m]),
             (_, n, m) => n.or(m).map(|n| [n, n]),
         };
-        Standing { rows, reach, directions }
+        let place = |row: usize| {
+            let places = [at.positions[row], at.positions[row] - at.velocities[row] * self.timestep];
+            match self.span {
+                Span::Distance => places,
+                Span::Along(axis) => places.map(|place| Vec3::X * axis.dot(place)),
+            }
+        };
+        let moment = Moment { time: at.time, places: [place(a), place(b)] };
+        Standing { rows, reach, moment, directions }
     }
 
     /// How link number `link` stands.
@@ -222,11 +236,11 @@ impl Links {
         let (number, slot) = self.place_of[link];
         let part = &self.layout.parts[number as usize];
         let memory = self.remembered(part, slot as usize, self.of_part(number as usize, at.memory));
-        let reach = self.standing(part, slot as usize, at).reach;
+        let Standing { reach, moment, .. } = self.standing(part, slot as usize, at);
         let (mut stance, gain) =
             (LinkStance { length: reach.length, push: 0.0, stored: 0.0 }, self.gain(at.driven));
         self.acting(at.driven, &mut |law| {
-            let response = law.respond(&reach, at.time, &memory);
+            let response = law.respond(&reach, &moment, &memory);
             (stance.push, stance.stored) = (gain * response.push, gain * response.stored);
         });
         stance
@@ -265,11 +279,11 @@ impl Links {
         for (number, part) in self.layout.parts.iter().enumerate() {
             let memory = self.of_part(number, at.memory);
             for slot in 0..part.links.len() {
-                let Standing { rows, reach, directions } = self.standing(part, slot, at);
+                let Standing { rows, reach, moment, directions } = self.standing(part, slot, at);
                 let Some([n, m]) = directions else { continue };
                 let numbers = self.remembered(part, slot, memory);
-                let push = law.respond(&reach, at.time, &numbers).push;
-                let [mut now, before] = law.slopes(&reach, at.time, &numbers);
+                let push = law.respond(&reach, &moment, &numbers).push;
+                let [mut now, before] = law.slopes(&reach, &moment, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
                 let turns = self.span == Span::Distance && reach.length > 0.0;
                 let mut across = if turns { push / reach.length } else { 0.0 };
@@ -393,7 +407,8 @@ impl Force for Links {
                 let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
                 let of = |slot| {
                     let numbers = self.remembered(part, slot, memory);
-                    law.respond(&self.standing(part, slot, at).reach, at.time, &numbers).stored
+                    let Standing { reach, moment, .. } = self.standing(part, slot, at);
+                    law.respond(&reach, &moment, &numbers).stored
                 };
                 (0..part.links.len()).map(of).sum()
             };
@@ -494,8 +509,8 @@ impl Force for Links {
             for (number, slot) in &self.place_of {
                 let (part, slot) = (&self.layout.parts[*number as usize], *slot as usize);
                 let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
-                let Standing { rows, reach, .. } = self.standing(part, slot, at);
-                let push = gain * law.respond(&reach, at.time, &memory).push;
+                let Standing { rows, reach, moment, .. } = self.standing(part, slot, at);
+                let push = gain * law.respond(&reach, &moment, &memory).push;
                 // a stop along an axis is a plane: the mass that stands for it is not what is touched
                 let is_plane = self.span != Span::Distance && law.range().is_finite();
                 let state =

@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use souple_engine::LinkState;
 use souple_math::{Dual, Lanes, Real, Vec3};
 
-use super::law::{LinkLaw, MEMORY, Reach, Response};
+use super::law::{AsksFor, LinkLaw, MEMORY, Moment, Reach, Response};
 use super::layout::{LANES, Part};
 use super::span::{Between, Known, OnAxis, Projected};
 
@@ -53,7 +53,7 @@ pub trait LinkKernel: Debug + Send + Sync {
     /// [`LinkKernel::advance`] along an axis.
     fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64;
     /// Force and energy of one link.
-    fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> Response;
     /// The same of many links of one rest length, of a law without memory: pushes [N] and heats [J] over lengths now and a step
     /// before [m]. All slices are whole blocks of eight.
     fn respond_to_many(
@@ -65,12 +65,18 @@ pub trait LinkKernel: Debug + Send + Sync {
     ) {
         let ways = lengths.iter().zip(before).zip(pushes).zip(heats);
         for (((length, before), push), heat) in ways {
-            let response = self.respond(&Reach { length: *length, before: *before, rest }, time, &[]);
+            let reach = Reach { length: *length, before: *before, rest };
+            let response = self.respond(&reach, &Moment::of(time), &[]);
             (*push, *heat) = (response.push, response.heat);
         }
     }
     /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
-    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
+    fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2];
+
+    /// Whether the law asks where ends are.
+    fn asks_for(&self) -> AsksFor {
+        AsksFor::default()
+    }
     /// Names of the parameters that a control may drive.
     fn registers(&self) -> Vec<&str>;
     /// Lends the law with other values in registers, for a step of so many seconds; without any, itself.
@@ -142,7 +148,7 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         Arch::new().dispatch(Advance { law: &self.0, part, rows: on_axis, memory })
     }
 
-    fn respond(&self, reach: &Reach, _: f64, memory: &[f64]) -> Response {
+    fn respond(&self, reach: &Reach, _: &Moment, memory: &[f64]) -> Response {
         self.0.respond(reach, &mut self.numbers(memory, |number| number))
     }
 
@@ -156,7 +162,7 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         Arch::new().dispatch(Many { law: &self.0, rest, lengths, before, pushes, heats });
     }
 
-    fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, _: &Moment, memory: &[f64]) -> [f64; 2] {
         [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
             let reach = Reach {
                 length: Dual::new(reach.length, now),

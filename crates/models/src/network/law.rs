@@ -7,7 +7,7 @@ use std::fmt::Debug;
 
 use souple_engine::LinkState;
 use souple_formal::ParseError;
-use souple_math::Real;
+use souple_math::{Real, Vec3};
 use souple_table::{Entry, Values};
 
 use super::kernel::LinkKernel;
@@ -24,6 +24,32 @@ pub struct Reach<R = f64> {
     pub before: R,
     /// The length the link was made with.
     pub rest: R,
+}
+
+/// When a link is looked at, and where its ends are.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// [s]
+    pub time: f64,
+    /// Of the first end and the second, now and a step before [m]; along an axis the place on it, as x. No numbers where nobody tells.
+    pub places: [[Vec3; 2]; 2],
+}
+
+impl Moment {
+    /// Of a link whose law does not ask where its ends are.
+    pub fn of(time: f64) -> Self {
+        let nowhere = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
+        Self { time, places: [[nowhere; 2]; 2] }
+    }
+}
+
+/// Whether a law asks where ends are, beside how far they are apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AsksFor {
+    /// On an axis that the links have.
+    pub place_on_axis: bool,
+    /// In space.
+    pub place_in_space: bool,
 }
 
 /// What a law makes of a link in a step.

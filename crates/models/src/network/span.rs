@@ -45,6 +45,8 @@ pub(super) trait Between: Copy {
 
     /// `D` and `D^r` of a link between two rows [m], and what a push of 1 N does to the first.
     fn one(self, ends: [usize; 2]) -> (f64, f64, Self::Load);
+    /// Where two rows are, now and a step before [m]; on an axis as x.
+    fn both(self, ends: [usize; 2]) -> [[Vec3; 2]; 2];
     /// Whether two rows are so far apart for certain, without a square root: `D >= distance`.
     fn are_beyond(self, ends: [usize; 2], distance: f64) -> bool;
     fn scaled(load: Self::Load, push: f64) -> Self::Load;
@@ -76,6 +78,13 @@ impl Between for Moving<'_> {
         let d = self.positions[a] - self.positions[b];
         let e = d - (self.velocities[a] - self.velocities[b]) * self.timestep;
         (d.length(), e.length(), d.try_normalised().or(e.try_normalised()).unwrap_or(Vec3::ZERO))
+    }
+
+    fn both(self, ends: [usize; 2]) -> [[Vec3; 2]; 2] {
+        ends.map(|row| {
+            let place = self.positions[row];
+            [place, place - self.velocities[row] * self.timestep]
+        })
     }
 
     fn are_beyond(self, [a, b]: [usize; 2], distance: f64) -> bool {
@@ -291,6 +300,10 @@ impl<P: Places> Between for OnAxis<P> {
     fn one(self, ends: [usize; 2]) -> (f64, f64, f64) {
         let [[a, b], [c, d]] = ends.map(|row| self.places.place(row));
         (a - c, b - d, 1.0)
+    }
+
+    fn both(self, ends: [usize; 2]) -> [[Vec3; 2]; 2] {
+        ends.map(|row| self.places.place(row).map(|place| Vec3::X * place))
     }
 
     fn are_beyond(self, [a, b]: [usize; 2], distance: f64) -> bool {

@@ -7,7 +7,7 @@ use souple_formal::{Formula, parse_quantity};
 use souple_math::Vec3;
 
 use super::kernel::{LinkKernel, Moving};
-use super::law::{LinkError, Reach, Response};
+use super::law::{AsksFor, LinkError, Moment, Reach, Response};
 use super::layout::{LANES, Part};
 use super::span::{Between, Known, OnAxis, Projected};
 
@@ -21,14 +21,18 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
     fn begin(&self, rest: f64, length: f64, memory: &mut [f64]);
     fn is_conservative(&self) -> bool;
     /// `memory` becomes that of the next step.
-    fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response;
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response;
     /// `∂φ/∂D` and `∂φ/∂D^r` [N/m].
-    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
+    fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2];
     /// See [`super::LinkLaw::stiffest`]; of a link of this rest length.
     fn stiffest(&self, rest: f64) -> f64;
     /// What holds a link together that remembers this.
     fn state(&self, _memory: &[f64]) -> LinkState {
         LinkState::In(0)
+    }
+    /// Whether it asks where ends are.
+    fn asks_for(&self) -> AsksFor {
+        AsksFor::default()
     }
     /// The distance [m] beyond which a link that remembers this does nothing and remembers the same: there its length is not
     /// computed, and with it no square root.
@@ -75,7 +79,11 @@ impl<L: WrittenLaw> OneByOne<L> {
         }
         let (length, before, direction) = rows.one(ends);
         let reach = Reach { length, before, rest: part.rest(block)[lane] };
-        let response = self.0.respond(&reach, rows.time(), &mut numbers[..len]);
+        let moment = match self.0.asks_for() == AsksFor::default() {
+            true => Moment::of(rows.time()),
+            false => Moment { time: rows.time(), places: rows.both(ends) },
+        };
+        let response = self.0.respond(&reach, &moment, &mut numbers[..len]);
         (B::scaled(direction, response.push), response)
     }
 
@@ -154,15 +162,19 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
         self.move_on(part, on_axis, memory)
     }
 
-    fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response {
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> Response {
         let mut numbers = [0.0; WRITTEN_MEMORY];
         let len = self.0.memory_len();
         numbers[..len].copy_from_slice(&memory[..len]);
-        self.0.respond(reach, time, &mut numbers[..len])
+        self.0.respond(reach, moment, &mut numbers[..len])
     }
 
-    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
-        self.0.slopes(reach, time, &memory[..self.0.memory_len()])
+    fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2] {
+        self.0.slopes(reach, moment, &memory[..self.0.memory_len()])
+    }
+
+    fn asks_for(&self) -> AsksFor {
+        self.0.asks_for()
     }
 
     fn registers(&self) -> Vec<&str> {

@@ -18,8 +18,8 @@ use souple_engine::{Force, Mass};
 use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
-    Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Listing,
-    Making, PAIR_MEMORY, Slide, Span,
+    Account, BuildLink, Crowd, CrowdDescription, Friction, Fusible, LinkDescription, LinkKernel, Links,
+    Listing, Making, PAIR_MEMORY, Slide, Span,
 };
 
 use super::bodies::Placed;
@@ -30,7 +30,7 @@ use crate::measure::ContourInfo;
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::network::{CrowdSpec, FrictionSpec, LinkTable, MassGroup, Network};
+use crate::spec::network::{CrowdSpec, FrictionSpec, FusibleSpec, LinkTable, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
 /// Which masses links of one law join, and how long they are at rest.
@@ -206,6 +206,19 @@ pub fn add_forces(
             timestep,
             account: if network.keeps_account { Account::Heat } else { Account::None },
         });
+        let (asks, is_on_axis) = (links.asks_for(), table.span != Span::Distance);
+        if (is_on_axis && asks.place_in_space) || (!is_on_axis && asks.place_on_axis) {
+            let (message, expected) = match is_on_axis {
+                true => {
+                    ("a condition asks for a place in space, and these links are along an axis", "`X1`, `X2`")
+                }
+                false => (
+                    "a condition asks for a place on an axis, and these links have none",
+                    "`X1.x` to `X2.z`, or `along`",
+                ),
+            };
+            draft.log.add(Code::Conflict, &table.site, message, expected);
+        }
         let links = links.wired(wiring);
         match seen {
             Some(seen) => forces.push(Box::new(seen.seen_by(links))),
@@ -244,9 +257,11 @@ fn crowd(
     draft: &Draft,
 ) -> Option<Crowd> {
     let law = law(spec.law.as_ref(), timestep, draft)?;
-    if law.memory_len() > PAIR_MEMORY {
+    // a bond is one number more
+    let most = PAIR_MEMORY - usize::from(spec.fusible.is_some());
+    if law.memory_len() > most {
         let message = format!("the law remembers {} numbers of a pair", law.memory_len());
-        let expected = format!("at most {PAIR_MEMORY}, or `links`, which are always there");
+        let expected = format!("at most {most}, or `links`, which are always there");
         draft.log.add(Code::Conflict, &spec.site, message, expected);
         return None;
     }
@@ -273,13 +288,89 @@ fn crowd(
         draft.log.add(Code::TooLarge, &spec.site, message, "a shorter range, or fewer masses");
         return None;
     }
+    let fusible = match &spec.fusible {
+        Some(fusible) => {
+            let of_second = if first == second { 0..0 } else { second.clone() };
+            let masses = first.clone().chain(of_second).map(|mass| body.mesh.points[mass as usize]);
+            Some(fusible_of(fusible, (range, timestep), masses, spec, draft)?)
+        }
+        None => None,
+    };
     let rows = |numbers: Range<u32>| {
         let base = body.rows.start as u32;
         base + numbers.start..base + numbers.end
     };
     let (first, second) = (rows(first), rows(second));
     let friction = spec.friction.as_ref().map(|friction| friction_of(friction, timestep));
-    Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep, listing }))
+    let description =
+        CrowdDescription { name, law, first, second, range, friction, fusible, timestep, listing };
+    Some(Crowd::new(description))
+}
+
+/// Bonds that melt, with the temperatures that masses at these places start with.
+fn fusible_of(
+    spec: &FusibleSpec,
+    (range, timestep): (f64, f64),
+    masses: impl Iterator<Item = Vec3>,
+    crowd: &CrowdSpec,
+    draft: &Draft,
+) -> Option<Fusible> {
+    let refuse = |code: Code, message: String, expected: &str| {
+        draft.log.add(code, &crowd.site, message, expected);
+        None
+    };
+    if spec.reach > range {
+        let message = format!("masses set that are {} m apart, and the crowd ends at {range} m", spec.reach);
+        return refuse(Code::OutOfRange, message, "a `reach` up to the range of the crowd");
+    }
+    let temperature = spec.temperature.as_ref()?;
+    let temperatures: Vec<f64> = masses.map(|place| temperature.evaluate(&place.to_array())).collect();
+    if let Some(wrong) = temperatures.iter().find(|kelvins| !(kelvins.is_finite() && **kelvins >= 0.0)) {
+        let message = format!("a mass starts at {wrong} K");
+        return refuse(Code::NotFinite, message, "temperatures from 0 K");
+    }
+    Some(Fusible {
+        capacity: spec.capacity,
+        conductance: spec.conductance,
+        softening: spec.softening,
+        melting: spec.melting,
+        stiffness: spec.stiffness,
+        damping: spec.damping / timestep,
+        reach: spec.reach,
+        heating: spec.heating.clone(),
+        exchange: spec.exchange.clone(),
+        temperatures,
+    })
+}
+
+/// Warns of masses that exchange more heat in a step than they hold: of temperatures that would swing.
+pub fn warn_of_heat(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for body in draft.bodies.iter().filter(|body| body.spec.network.is_some()) {
+        let positions: Vec<Vec3> = std::iter::repeat_n(Vec3::ZERO, body.rows.start)
+            .chain(body.mesh.points.iter().copied())
+            .collect();
+        let is_here = |crowd: &&Crowd| {
+            let [first, second] = crowd.rows();
+            [first, second]
+                .iter()
+                .all(|rows| body.rows.start <= rows.start as usize && rows.end as usize <= body.rows.end)
+        };
+        let forces = draft.systems[body.system].forces.iter();
+        for crowd in forces.filter_map(|force| force.as_any().downcast_ref::<Crowd>()).filter(is_here) {
+            let Some((share, row)) = crowd.heat_share(&positions) else { continue };
+            if share > 1.0 {
+                warnings.push(format!(
+                    "{}: in a step mass {} of network `{}` exchanges {share:.3} of the heat that it holds: temperatures may swing; \
+                     take shorter steps, or a greater `capacity`",
+                    draft.place(&body.spec.site),
+                    row as usize - body.rows.start,
+                    body.spec.name,
+                ));
+            }
+        }
+    }
+    draft.warnings.extend(warnings);
 }
 
 /// The contours of each body.

@@ -125,9 +125,9 @@ pub fn mesh_of(spec: &MeshSpec, body: &str, draft: &Draft, warnings: &mut Vec<St
             log.add(Code::Conflict, site, message, "`generate`, `file`, `shape` or `fill`");
             return None;
         }
-        MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, warnings)?),
+        MeshSpec::File { file, scale, .. } => Ok(of_file(draft, spec.site(), file, *scale, warnings)?),
         MeshSpec::Filled { file, scale, options, .. } => {
-            let mesh = read(draft, spec.site(), file, *scale, warnings)?;
+            let mesh = of_file(draft, spec.site(), file, *scale, warnings)?;
             fill_mesh(&mesh, RepairLimits::default(), options).map(|filled| {
                 warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
                 filled.mesh
@@ -154,7 +154,13 @@ pub fn mesh_of(spec: &MeshSpec, body: &str, draft: &Draft, warnings: &mut Vec<St
 }
 
 /// The mesh of a file; `None` where it was refused.
-fn read(draft: &Draft, site: &Site, file: &str, scale: f64, warnings: &mut Vec<String>) -> Option<Mesh> {
+pub fn of_file(
+    draft: &Draft,
+    site: &Site,
+    file: &str,
+    scale: f64,
+    warnings: &mut Vec<String>,
+) -> Option<Mesh> {
     let path = match draft.sources.open(site.place.source, file) {
         Ok(path) => path,
         Err(error) => {

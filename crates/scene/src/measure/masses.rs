@@ -1,16 +1,43 @@
 //! Quantities of multitudes: what hangs together, and how close.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
-use souple_engine::World;
+use souple_engine::{System, World};
 use souple_math::Vec3;
 use souple_mesh::Sets;
+use souple_models::network::Crowd;
 
 use super::Part;
 use crate::spec::quantity::MassesQuantity;
 
-/// `within`: how far apart masses count as neighbours [m].
-pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World) -> f64 {
+/// What is measured of which masses.
+#[derive(Clone, Debug)]
+pub struct Multitude {
+    quantity: MassesQuantity,
+    part: Part,
+    /// How far apart masses count as neighbours, or how wide columns are [m].
+    within: f64,
+    /// Of length 1.
+    up: Vec3,
+    /// Neighbours as the scene gives them, of a quantity that asks for them.
+    before: Vec<[u32; 2]>,
+}
+
+impl Multitude {
+    pub fn new(quantity: MassesQuantity, part: Part, within: f64, up: Vec3) -> Self {
+        let is_asked = quantity == MassesQuantity::Kept;
+        let before = if is_asked { neighbours(&part.starts, within) } else { Vec::new() };
+        Self { quantity, part, within, up, before }
+    }
+
+    pub fn measure(&self, world: &mut World) -> f64 {
+        measure(self, world)
+    }
+}
+
+fn measure(asked: &Multitude, world: &mut World) -> f64 {
+    let Multitude { quantity, ref part, within, up, ref before } = *asked;
     if quantity == MassesQuantity::Pairs {
         let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
         let pairs = &world.state().systems[part.system].pairs;
@@ -18,8 +45,27 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
         world.visit_near(part.system, &mut |rows| count += usize::from(rows.into_iter().all(is_in)));
         return count as f64;
     }
+    if quantity == MassesQuantity::Interactions {
+        let forces = world.model().systems[part.system].forces.iter();
+        let of = |rows: &Range<u32>| {
+            part.rows.partition_point(|row| *row < rows.end)
+                - part.rows.partition_point(|row| *row < rows.start)
+        };
+        let pairs = |crowd: &Crowd| {
+            let [first, second] = crowd.rows();
+            let (a, b) = (of(&first) as f64, of(&second) as f64);
+            if first == second { 0.5 * a * (a - 1.0) } else { a * b }
+        };
+        return forces.filter_map(|force| force.as_any().downcast_ref()).map(pairs).sum();
+    }
+    if let MassesQuantity::Temperature | MassesQuantity::Bonds = quantity {
+        return of_fusible(quantity, part, world);
+    }
     let positions = &world.rows(part.system).positions;
     let places: Vec<Vec3> = part.rows.iter().map(|row| positions[*row as usize]).collect();
+    if quantity == MassesQuantity::Relief {
+        return relief(&places, within, up);
+    }
     let near = neighbours(&places, within);
     match quantity {
         MassesQuantity::Parts => {
@@ -39,7 +85,6 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
             }
         }
         MassesQuantity::Kept => {
-            let before = neighbours(&part.starts, within);
             let is_still = |[a, b]: &&[u32; 2]| {
                 (places[*a as usize] - places[*b as usize]).length_sq() < within * within
             };
@@ -47,8 +92,48 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
             // of none there is no share, which is told at the end of a run
             still as f64 / before.len() as f64
         }
-        MassesQuantity::Pairs => unreachable!("counted above"),
+        MassesQuantity::Relief
+        | MassesQuantity::Pairs
+        | MassesQuantity::Interactions
+        | MassesQuantity::Temperature
+        | MassesQuantity::Bonds => {
+            unreachable!("measured above")
+        }
     }
+}
+
+/// Of what has no temperature there is no mean, which is told at the end of a run.
+fn of_fusible(quantity: MassesQuantity, part: &Part, world: &mut World) -> f64 {
+    let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
+    world.with_system(part.system, |system: &System, state, around, ws| {
+        let (mut sum, mut count, mut bonds) = (0.0, 0, 0);
+        for (index, force) in system.forces.iter().enumerate() {
+            let Some(crowd) = force.as_any().downcast_ref::<Crowd>() else { continue };
+            let at = system.view(index, &ws.rows, state, around);
+            crowd.visit_bonds(&at, |ends| bonds += usize::from(ends.into_iter().all(is_in)));
+            for temperature in part.rows.iter().filter_map(|row| crowd.temperature(*row, at.memory)) {
+                sum += temperature;
+                count += 1;
+            }
+        }
+        if quantity == MassesQuantity::Bonds { bonds as f64 } else { sum / f64::from(count) }
+    })
+}
+
+/// Of the topmost places in columns along `up`; no number of none.
+fn relief(places: &[Vec3], width: f64, up: Vec3) -> f64 {
+    let mut tops: HashMap<[i64; 3], f64> = HashMap::new();
+    for place in places {
+        let height = place.dot(up);
+        let column = (*place - up * height).to_array().map(|x| (x / width).floor() as i64);
+        let top = tops.entry(column).or_insert(height);
+        *top = top.max(height);
+    }
+    // in an order that is the same every time
+    let mut heights: Vec<f64> = tops.into_values().collect();
+    heights.sort_unstable_by(f64::total_cmp);
+    let mean = heights.iter().sum::<f64>() / heights.len() as f64;
+    (heights.iter().map(|height| (height - mean).powi(2)).sum::<f64>() / heights.len() as f64).sqrt()
 }
 
 /// Pairs of places nearer to each other than `within`, in order.

@@ -16,6 +16,7 @@ mod skin;
 
 pub use contour::ContourInfo;
 pub use levels::Workload;
+pub use reaction::power_from_outside;
 
 use std::collections::BTreeMap;
 
@@ -23,6 +24,7 @@ use souple_engine::{Force, World};
 use souple_math::Vec3;
 
 use self::against::Reference;
+use self::masses::Multitude;
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
@@ -65,7 +67,7 @@ enum Target {
     Bone(BoneQuantity, BonePart),
     Contour(ContourQuantity, usize, [ContourInfo; 2]),
     /// With the distance within which masses are neighbours [m].
-    Masses(MassesQuantity, Part, f64),
+    Masses(Box<Multitude>),
 }
 
 /// Points of a body.
@@ -210,7 +212,13 @@ impl ProbeInfo {
                 Target::Contour(quantity, body.system, [own, from])
             }
             (Subject::Masses(quantity), _) => {
-                Target::Masses(quantity, part(probe, draft)?, probe.within.unwrap_or(0.0))
+                let gravity = draft.spec.world.gravity.as_ref();
+                let weight = gravity.map_or(Vec3::ZERO, |g| {
+                    Vec3::from_array([0, 1, 2].map(|axis: usize| g[axis].evaluate(&[0.0])))
+                });
+                let up = (-weight).try_normalised().unwrap_or(Vec3::Z);
+                let (part, within) = (part(probe, draft)?, probe.within.unwrap_or(0.0));
+                Target::Masses(Box::new(Multitude::new(quantity, part, within, up)))
             }
             (Subject::Levels(quantity), _) => Target::Levels(quantity, levels_part(probe, draft)?),
         };
@@ -239,9 +247,7 @@ impl ProbeInfo {
             Target::Contour(quantity, system, contours) => {
                 Measurement::Number(contour::measure(*quantity, &world.rows(*system).positions, contours))
             }
-            Target::Masses(quantity, part, within) => {
-                Measurement::Number(masses::measure(*quantity, part, *within, world))
-            }
+            Target::Masses(asked) => Measurement::Number(asked.measure(world)),
             Target::Levels(quantity, part) => Measurement::Number(levels::measure(*quantity, part, world)),
             Target::Hand(quantity, hand) => match hand::measure(*quantity, hand, world) {
                 Measurement::Vector(vector) => self.vector(vector),

@@ -9,7 +9,7 @@
 
 use souple_engine::inertia::row_accelerations_at;
 use souple_engine::levels::Followers;
-use souple_engine::{Surroundings, System, SystemState, SystemWorkspace, World};
+use souple_engine::{Configuration, Declaration, Surroundings, System, SystemState, SystemWorkspace, World};
 use souple_math::{Mat3, Vec3};
 use souple_models::frames::ROWS_OF_FRAME;
 
@@ -61,6 +61,36 @@ pub fn of_bone(quantity: BoneQuantity, part: &BonePart, world: &mut World) -> Ve
         }
         sum
     })
+}
+
+/// Power that the world is given from outside [W]: by pins that lead points, by loads that have no energy, and by those whose energy
+/// changes with time. What shapes that move and hands do is not in it.
+pub fn power_from_outside(world: &mut World) -> f64 {
+    let period = world.model().period;
+    let of_system = |world: &mut World, index: usize| {
+        let timestep = world.model().timestep(index);
+        world.with_system(index, |system: &System, state, around, ws| {
+            let joined = system.kinematics.row_count() > system.kinematics.free_row_count();
+            let balance = balance(system, state, around, ws, timestep, joined);
+            let mut forces = of_pins(system, state, around, ws, &balance, None);
+            let mut power = 0.0;
+            for (index, force) in system.forces.iter().enumerate() {
+                let Declaration { conservative, internal, velocity_terms, .. } = force.declaration();
+                if internal || velocity_terms || force.memory_len() > 0 {
+                    continue;
+                }
+                let (at, scratch) = (system.view(index, &ws.rows, state, around), &mut ws.scratches[index]);
+                if conservative {
+                    let mut stored = |time: f64| force.energy(&Configuration { time, ..at }, scratch).stored;
+                    power += (stored(at.time + 0.5 * period) - stored(at.time - 0.5 * period)) / period;
+                } else {
+                    force.add_force(&at, scratch, &mut forces);
+                }
+            }
+            power + forces.iter().zip(&ws.rows.velocities).map(|(f, v)| f.dot(*v)).sum::<f64>()
+        })
+    };
+    (0..world.model().systems.len()).map(|index| of_system(world, index)).sum()
 }
 
 /// What pins do to each row [N]: `balance` along constraints, and the pull of the springs that hold points which frames carry.

@@ -2,10 +2,14 @@
 
 mod contours;
 mod fill;
+mod fusible;
+mod kept;
 mod objects;
 
 pub use contours::{ContourSpec, Way};
 pub use fill::FillSpec;
+pub use fusible::FusibleSpec;
+pub use kept::FileSpec;
 
 use std::iter::repeat_n;
 
@@ -92,6 +96,7 @@ pub(super) static MASSES: Keys = Keys::new(
         Key::new("polygon", Shape::Table(&POLYGON), "they start on a closed line from corner to corner"),
         Key::new("lattice", Shape::Table(&LATTICE), "they start on a lattice"),
         Key::new("fill", Shape::Table(&fill::FILL), "they fill a shape"),
+        Key::new("from", Shape::Table(&kept::FROM_FILE), "they start where a file has points"),
         Key::number("mass", "kg", Range::POSITIVE, "of each").required(),
         Key::new("fixed", Shape::Boolean, "they stay where they are, whatever pulls")
             .or(Value::Boolean(false)),
@@ -184,6 +189,11 @@ pub(super) static CROWD: Keys = Keys::new(
         ),
         Key::number("range", "m", Range::POSITIVE, "no force beyond; that of the law where left out"),
         Key::new("friction", Shape::Table(&FRICTION), "what holds them across"),
+        Key::new(
+            "fusible",
+            Shape::Table(&fusible::FUSIBLE),
+            "bonds that melt and set, with temperatures of its masses",
+        ),
     ],
 );
 
@@ -277,6 +287,8 @@ pub enum Places {
     Lattice { origin: Vec3, spacing: f64, counts: [u64; 3] },
     /// Wherever a shape has room.
     Filled(Box<FillSpec>),
+    /// Where a file has points.
+    File(Box<FileSpec>),
 }
 
 /// Links of one law.
@@ -307,6 +319,7 @@ pub struct CrowdSpec {
     /// That of the law where `None` [m].
     pub range: Option<f64>,
     pub friction: Option<FrictionSpec>,
+    pub fusible: Option<FusibleSpec>,
     pub site: Site,
 }
 
@@ -370,6 +383,12 @@ impl Network {
         let groups: Vec<&str> = network.masses.iter().map(|group| group.name.as_str()).collect();
         let of_objects = objects::crowds(&name, &groups, reader);
         network.crowds.extend(of_objects);
+        for crowd in network.crowds.iter().filter(|crowd| crowd.fusible.is_some()) {
+            if network.space == Space::Algorithmic {
+                let message = "`fusible` is in SI units, and the network counts time in steps";
+                reader.log().add(Code::Conflict, &crowd.site, message, "space = \"physical\"");
+            }
+        }
         network.check_contours(reader);
         network.check_count(reader);
         let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
@@ -481,7 +500,7 @@ impl MassGroup {
     }
 
     pub(super) fn read(name: String, reader: &Reader) -> Self {
-        let written = reader.written(&["positions", "line", "ring", "polygon", "lattice", "fill"]);
+        let written = reader.written(&["positions", "line", "ring", "polygon", "lattice", "fill", "from"]);
         let places = match written[..] {
             ["positions"] => Some(Places::Listed(reader.vectors("positions"))),
             ["line"] => reader.table("line").map(|line| Places::on_line(&line)),
@@ -489,13 +508,14 @@ impl MassGroup {
             ["polygon"] => reader.table("polygon").and_then(|polygon| Places::on_polygon(&polygon)),
             ["lattice"] => reader.table("lattice").and_then(|lattice| Places::on_lattice(&lattice)),
             ["fill"] => reader.table("fill").map(|fill| Places::Filled(Box::new(FillSpec::read(&fill)))),
+            ["from"] => reader.table("from").map(|file| Places::File(Box::new(FileSpec::read(&file)))),
             _ => {
                 let message = format!("masses start in one way, these say {}", written.len());
                 reader.log().add(
                     Code::WrongType,
                     &reader.site(),
                     message,
-                    "one of positions, line, ring, polygon, lattice, fill",
+                    "one of positions, line, ring, polygon, lattice, fill, from",
                 );
                 None
             }
@@ -595,6 +615,7 @@ impl Places {
             Self::Line { count, .. } | Self::Ring { count, .. } => *count,
             Self::Lattice { counts: [x, y, z], .. } => x * y * z,
             Self::Filled(fill) => fill.places().len() as u64,
+            Self::File(file) => file.places().len() as u64,
         }
     }
 
@@ -603,6 +624,7 @@ impl Places {
         match self {
             Self::Listed(places) => places[index as usize],
             Self::Filled(fill) => fill.places()[index as usize],
+            Self::File(file) => file.places()[index as usize],
             Self::Line { from, to, count } => *from + (*to - *from) * (index as f64 / (count - 1) as f64),
             Self::Ring { centre, first, axis, count } => {
                 let angle = std::f64::consts::TAU * index as f64 / *count as f64;
@@ -697,6 +719,7 @@ impl CrowdSpec {
             kept_apart: Vec::new(),
             range: reader.maybe_number("range"),
             friction,
+            fusible: reader.table("fusible").map(|table| FusibleSpec::read(&table)),
             site: reader.site(),
         }
     }

@@ -326,7 +326,7 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             reader,
             "within",
             message,
-            "within = \"…\" with masses.parts, neighbours, spacing and kept only",
+            "within = \"…\" with masses.parts, neighbours, spacing, kept and relief only",
         );
     }
     if reader.has("about") && !quantity.has_place() {

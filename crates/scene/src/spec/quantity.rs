@@ -76,7 +76,11 @@ pub enum MassesQuantity {
     Neighbours,
     Spacing,
     Kept,
+    Relief,
     Pairs,
+    Interactions,
+    Temperature,
+    Bonds,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,6 +216,7 @@ impl Quantity {
                     | MassesQuantity::Neighbours
                     | MassesQuantity::Spacing
                     | MassesQuantity::Kept
+                    | MassesQuantity::Relief
             )
         )
     }
@@ -245,6 +250,7 @@ const ADAPTATION: &str = "Faure 2014, §6.4";
 const LEVELS: &str = "Debunne 2000, 5 §2.3";
 const HAPTICS: &str = "Debunne 2000, 6 §3; Colgate, Stanley & Brown 1995";
 const OUTLINE: &str = "Jimenez 1993, P2-III.2.3";
+const HEAT: &str = "Jimenez 1993, P1-II.4.2, after Terzopoulos, Platt & Fleischer 1989";
 const MULTITUDE: &str = "Jimenez 1993, P2-III.2";
 const MECHANICS: &str = "balance of momentum";
 
@@ -548,10 +554,34 @@ const ENTRIES: &[&QuantityEntry] = &[
         masses("", MassesQuantity::Kept),
     ),
     &entry(
+        "masses.relief",
+        "root of the mean square of the heights of the topmost masses, against gravity, in columns as wide as the key `within`, about their mean",
+        MULTITUDE,
+        masses("m", MassesQuantity::Relief),
+    ),
+    &entry(
         "masses.pairs",
         "pairs of masses that crowds have within their ranges: what a step costs",
         MULTITUDE,
         masses("", MassesQuantity::Pairs),
+    ),
+    &entry(
+        "masses.interactions",
+        "pairs of masses that crowds act between, however far apart they are: what a step would cost without a search",
+        MULTITUDE,
+        masses("", MassesQuantity::Interactions),
+    ),
+    &entry(
+        "masses.temperature",
+        "mean temperature of masses of a fusible crowd [K]",
+        HEAT,
+        masses("", MassesQuantity::Temperature),
+    ),
+    &entry(
+        "masses.bonds",
+        "bonds between masses of fusible crowds that have not melted",
+        HEAT,
+        masses("", MassesQuantity::Bonds),
     ),
     &entry(
         "contour.length",

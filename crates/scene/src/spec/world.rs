@@ -74,6 +74,23 @@ pub(crate) static RUN: Keys = Keys::new(
         Key::integer("frames", Range::closed(0.0, 1e6), "pictures of the state written along the way")
             .or(Value::Integer(30)),
         Key::integer("seed", Range::at_least(0.0), "of the random generators").or(Value::Integer(0)),
+        Key::new("monitor", Shape::Table(&MONITOR), "watches energy that grows without work"),
+    ],
+);
+
+static MONITOR: Keys = Keys::new(
+    "monitor",
+    "tells when there is more energy than work from outside can account for: a step that is too long makes it",
+    &[
+        Key::number(
+            "growth",
+            "",
+            Range::POSITIVE,
+            "how much more it may be, in the greatest kinetic energy of the first half of the time",
+        )
+        .or(Value::Number(1.0)),
+        Key::new("stop", Shape::Boolean, "ends the run there as failed; it is warned of where left out")
+            .or(Value::Boolean(false)),
     ],
 );
 
@@ -119,6 +136,14 @@ pub struct RunSpec {
     pub duration: f64,
     pub frames: u64,
     pub seed: u64,
+    pub monitor: Option<MonitorSpec>,
+}
+
+/// What of a run's energy is watched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonitorSpec {
+    pub growth: f64,
+    pub stops: bool,
 }
 
 /// The system where none is written.
@@ -188,12 +213,16 @@ impl RunSpec {
             duration: reader.number("duration"),
             frames: reader.maybe_integer("frames").unwrap_or(0) as u64,
             seed: reader.maybe_integer("seed").unwrap_or(0) as u64,
+            monitor: reader.table("monitor").map(|monitor| MonitorSpec {
+                growth: monitor.number("growth"),
+                stops: monitor.boolean("stop"),
+            }),
         }
     }
 }
 
 impl Default for RunSpec {
     fn default() -> Self {
-        Self { duration: 1.0, frames: 30, seed: 0 }
+        Self { duration: 1.0, frames: 30, seed: 0, monitor: None }
     }
 }

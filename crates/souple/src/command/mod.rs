@@ -237,7 +237,9 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::TooManySteps { .. }
             | RunError::NoStep { .. } => Self::request("run", "", "", error.to_string()),
             // what is found out after steps, and told by the report
-            RunError::Recording(_) | RunError::BlownUp { .. } => Self::work("run", error.to_string()),
+            RunError::Recording(_) | RunError::BlownUp { .. } | RunError::Grown(_) => {
+                Self::work("run", error.to_string())
+            }
             RunError::Output(output) => match output {
                 // the messages say what would be right
                 OutputError::Foreign { .. }

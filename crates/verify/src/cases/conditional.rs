@@ -61,6 +61,31 @@ pub(super) const CASES: &[Case] = &[
         ..WORDS
     },
     Case {
+        id: "words_place",
+        what: "glue that takes hold where the led end has come beyond -0.985 m, k (1.03 - 0.98)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "conditional", states = { free = "SUP, X2.x, -0.985 -> held", held = "L0=D; CHK, 1000" } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 50.0,
+        source: "specification §2.7: X1 and X2 are inputs of conditions",
+        mutation: "networks.sample.links[0].law.states.free=SUP, X1.x, -0.985 -> held",
+        ..WORDS
+    },
+    Case {
+        id: "words_place_on_axis",
+        what: "the same of links along an axis",
+        settings: &[
+            "networks.sample.links[0].along=[1, 0, 0]",
+            r#"networks.sample.links[0].law={ name = "conditional", states = { free = "SUP, X2, -0.985 -> held", held = "L0=D; CHK, 1000" } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 50.0,
+        source: "specification §2.7: X1 and X2 are inputs of conditions",
+        mutation: "networks.sample.links[0].law.states.free=AUG, X2 -> held",
+        ..WORDS
+    },
+    Case {
         id: "words_glue_holds",
         what: "glue that breaks again: at 20 mm it holds",
         settings: &[

@@ -15,6 +15,7 @@ mod formulations;
 mod frames;
 mod frequencies;
 mod hands;
+mod heat;
 mod implicit;
 mod levels;
 mod loads;
@@ -79,6 +80,7 @@ pub const TABLES: &[&[Case]] = &[
     rheometer::CASES,
     rheology::CASES,
     conditional::CASES,
+    heat::CASES,
     material_fields::CASES,
     matter::CASES,
     material_tests::CASES,

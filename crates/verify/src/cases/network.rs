@@ -22,6 +22,7 @@ const UNDAMPED: &str = "networks.oscillator.links[0].law.damping=0";
 
 /// A mass that nothing holds.
 const FREE: &str = r#"networks.oscillator.links[0].law={ name = "spring", stiffness = 0 }"#;
+const STILL: &str = "networks.table.masses.book.velocity=[0, 0, 0]";
 const IMPULSE: &str =
     r#"networks.oscillator.loads=[{ region = "bob", force = ["if(t > 0.15 and t < 0.25, 10, 0)", 0, 0] }]"#;
 
@@ -226,6 +227,35 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(1e-2),
         source: "EXP-38: within 1 %",
         mutation: "networks.table.crowds[0].friction.kinetic=0.41",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "friction_holds_below",
+        capabilities: &["JIM-46", "JIM-47"],
+        what: "way of a mass under gravity that has leaned within a second to tan θ = 0.582, 3 % below the static coefficient: that of its hook",
+        scene: "network_friction",
+        settings: &[STILL, r#"world.gravity=["9.81 * 0.582 * min(t, 1)", 0, -9.81]"#],
+        reading: Reading::component("place", 0),
+        // F_t/K_t
+        reference: 0.582 * 9.81 / 1e5,
+        // what swings on the hook when gravity stops leaning: F/(T K √(K/M)), and the way the ball turns, F/K of ten kilometres
+        tolerance: Tolerance::Absolute(0.582 * 9.81 / 1e5 / 316.0 + 1e-8),
+        source: "EXP-38: slides iff tan θ > mu_s, ramped load, within 3 %",
+        mutation: r#"world.gravity=["9.81 * 0.618 * min(t, 1)", 0, -9.81]"#,
+        ..OSCILLATOR
+    },
+    Case {
+        id: "friction_slides_above",
+        capabilities: &["JIM-46", "JIM-47"],
+        what: "way of the same at tan θ = 0.618, 3 % above: in the second after it, at g (0.618 - 0.4)",
+        scene: "network_friction",
+        settings: &[STILL, r#"world.gravity=["9.81 * 0.618 * min(t, 1)", 0, -9.81]"#],
+        reading: Reading::component("place", 0),
+        // from 0.6 on: at least that of the last second alone
+        reference: 0.5 * 9.81 * 0.218,
+        tolerance: Tolerance::AtLeast,
+        source: "EXP-38: slides iff tan θ > mu_s, ramped load, within 3 %",
+        mutation: r#"world.gravity=["9.81 * 0.582 * min(t, 1)", 0, -9.81]"#,
         ..OSCILLATOR
     },
     Case {

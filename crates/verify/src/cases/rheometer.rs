@@ -70,6 +70,39 @@ const CURVE: Case = Case {
 
 pub(super) const CASES: &[Case] = &[
     Case {
+        id: "rheometer_spring",
+        capabilities: &["JIM-49", "JIM-56"],
+        what: "a spring on the way back from 30 mm, at 20 mm: k q",
+        settings: &[r#"networks.sample.links[0].law={ name = "spring", stiffness = 1000 }"#],
+        reading: PULL.after(7),
+        reference: 20.0,
+        source: "EXP-40: Q = k q",
+        mutation: "networks.sample.links[0].law.stiffness=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_spring_has_no_loop",
+        capabilities: &["JIM-49", "JIM-56"],
+        what: "the same on the way there, at 20 mm",
+        settings: &[r#"networks.sample.links[0].law={ name = "spring", stiffness = 1000 }"#],
+        reading: PULL.after(4),
+        reference: 20.0,
+        source: "EXP-40: without loop",
+        mutation: r#"networks.sample.links[0].law={ name = "spring_damper", stiffness = 1000, damping = 1 }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_damper",
+        capabilities: &["JIM-49", "JIM-56"],
+        what: "a damper pulled by 5 mm in 10 ms: z q'",
+        settings: &[r#"networks.sample.links[0].law={ name = "damper", damping = 100 }"#],
+        reading: PULL.after(2),
+        reference: 50.0,
+        source: "EXP-40: Q = z q'",
+        mutation: "networks.sample.links[0].law.damping=101",
+        ..PLASTIC
+    },
+    Case {
         id: "rheometer_kelvin_voigt",
         capabilities: &["JIM-49", "JIM-56"],
         what: "a spring beside a damper pulled at 0.5 m/s: k q + z q'",

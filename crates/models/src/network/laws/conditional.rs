@@ -4,11 +4,14 @@
 //! on the variables of that step; the last one met wins, one at most is made, its entry dispositions are carried out, and
 //! the force is that of the new state. `finite_state` does the same with formulas.
 
+use std::cell::Cell;
+
 use souple_engine::LinkState;
 use souple_formal::{Formula, parse_quantity};
+use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
-use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::law::{AsksFor, LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{OneByOne, WrittenLaw};
 
 /// Numbers that a link remembers: the state, `K`, `Z`, `L0`, and `dV` of the step before.
@@ -27,6 +30,7 @@ struct Conditional {
     damping: f64,
     /// What `CDX` stands for, of `t`.
     external: Option<Formula>,
+    asks: AsksFor,
     /// Whether a condition compares `dV` with that of the step before.
     watches_moved: bool,
 }
@@ -81,6 +85,8 @@ enum Variable {
     Elongation,
     /// `dV`
     Moved,
+    /// `X1` and `X2` on an axis, and their components in space.
+    Place { end: u8, component: u8 },
 }
 
 /// Variables now and a step before.
@@ -89,15 +95,17 @@ struct Watched {
     length: [f64; 2],
     elongation: [f64; 2],
     moved: [f64; 2],
+    places: [[Vec3; 2]; 2],
 }
 
 impl Watched {
-    fn of(reach: &Reach, memory: &[f64]) -> Self {
+    fn of(reach: &Reach, moment: &Moment, memory: &[f64]) -> Self {
         let (now, before) = (reach.length, reach.before);
         Self {
             length: [now, before],
             elongation: [now - memory[LENGTH], before - memory[LENGTH]],
             moved: [now - before, memory[MOVED]],
+            places: moment.places,
         }
     }
 
@@ -106,6 +114,9 @@ impl Watched {
             Variable::Length => self.length,
             Variable::Elongation => self.elongation,
             Variable::Moved => self.moved,
+            Variable::Place { end, component } => {
+                self.places[usize::from(end)].map(|place| place[usize::from(component)])
+            }
         }
     }
 }
@@ -134,10 +145,10 @@ impl Conditional {
     }
 
     /// Makes the transition of a step.
-    fn switch(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> &State {
+    fn switch(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> &State {
         let state = &self.states[memory[STATE] as usize];
-        let watched = Watched::of(reach, memory);
-        let met = |transition: &&Transition| self.holds(transition.condition, &watched, time);
+        let watched = Watched::of(reach, moment, memory);
+        let met = |transition: &&Transition| self.holds(transition.condition, &watched, moment.time);
         let Some(Transition { to, .. }) = state.transitions.iter().rev().find(met) else { return state };
         memory[STATE] = *to as f64;
         let entered = &self.states[*to];
@@ -173,6 +184,10 @@ impl WrittenLaw for Conditional {
         false
     }
 
+    fn asks_for(&self) -> AsksFor {
+        self.asks
+    }
+
     fn idle_from(&self, memory: &[f64]) -> Option<f64> {
         let state = &self.states[memory[STATE] as usize];
         let is_slack = Self::act(state, memory) == [0.0, 0.0] && !self.watches_moved;
@@ -191,8 +206,8 @@ impl WrittenLaw for Conditional {
     }
 
     // φ = -K L - Z dV
-    fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
-        let state = self.switch(reach, time, memory);
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response {
+        let state = self.switch(reach, moment, memory);
         let [stiffness, damping] = Self::act(state, memory);
         let (elongation, moved) = (reach.length - memory[LENGTH], reach.length - reach.before);
         memory[MOVED] = if self.watches_moved { moved } else { 0.0 };
@@ -203,10 +218,10 @@ impl WrittenLaw for Conditional {
         }
     }
 
-    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2] {
         let mut numbers = [0.0; MEMORY];
         numbers.copy_from_slice(&memory[..MEMORY]);
-        let state = self.switch(reach, time, &mut numbers);
+        let state = self.switch(reach, moment, &mut numbers);
         let [stiffness, damping] = Self::act(state, &numbers);
         [-stiffness - damping, damping]
     }
@@ -266,6 +281,7 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
         parameters: making.values.texts("parameters"),
         timestep: making.timestep,
         has_external: external.is_some(),
+        asks: Cell::default(),
     };
     let mut states = Vec::new();
     for (name, text) in texts {
@@ -284,6 +300,7 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
         stiffness: making.values.number("stiffness"),
         damping: making.values.number("damping") / making.timestep,
         external,
+        asks: reader.asks.get(),
     };
     check(&conditional, &names)?;
     Ok(conditional)
@@ -349,6 +366,8 @@ struct Words<'a> {
     parameters: &'a [(String, String)],
     timestep: f64,
     has_external: bool,
+    /// What conditions have asked for so far.
+    asks: Cell<AsksFor>,
 }
 
 impl Words<'_> {
@@ -438,12 +457,33 @@ impl Words<'_> {
             "D" => Ok(Variable::Length),
             "L" => Ok(Variable::Elongation),
             "dV" => Ok(Variable::Moved),
-            "X1" | "X2" => refuse(
-                place,
-                format!("asks for `{name}`, a place: links know how far their ends are apart, D, L and dV"),
-            ),
-            _ => refuse(place, format!("asks for `{name}`; variables are D, L and dV")),
+            _ => match self.place(name) {
+                Some(variable) => Ok(variable),
+                None => refuse(
+                    place,
+                    format!(
+                        "asks for `{name}`; variables are D, L, dV and the places of the ends: X1 and X2 on an axis, X1.x to X2.z in space"
+                    ),
+                ),
+            },
         }
+    }
+
+    /// A place of an end.
+    fn place(&self, name: &str) -> Option<Variable> {
+        let (end, rest) = match name.split_at_checked(2)? {
+            ("X1", rest) => (0, rest),
+            ("X2", rest) => (1, rest),
+            _ => return None,
+        };
+        let component = ["", ".x", ".y", ".z"].iter().position(|known| *known == rest)?;
+        let mut asks = self.asks.get();
+        match component {
+            0 => asks.place_on_axis = true,
+            _ => asks.place_in_space = true,
+        }
+        self.asks.set(asks);
+        Some(Variable::Place { end, component: component.saturating_sub(1) as u8 })
     }
 
     /// A bound of a variable; velocities are given in m/s, and are lengths of a step within.
@@ -493,7 +533,7 @@ mod tests {
         steps
             .map(|(n, (now, before))| {
                 let reach = Reach { length: *now, before: *before, rest: lengths[0] };
-                let push = link.respond(&reach, n as f64 * TE, &mut memory).push;
+                let push = link.respond(&reach, &Moment::of(n as f64 * TE), &mut memory).push;
                 (memory[STATE] as usize, push)
             })
             .unzip()
@@ -593,12 +633,33 @@ mod tests {
             &["to `b` that never fires"],
         );
         refused(&[("a", "CDX -> a")], &["no `external`", "never holds"]);
-        refused(&[("a", "SUP, X1, 1 -> a")], &["`X1`, a place"]);
+        refused(&[("a", "SUP, X3, 1 -> a")], &["`X3`", "X1.x to X2.z"]);
         refused(&[("a", "SUB, D, 1 -> a")], &["`SUB, D, 1`", "AUG, var"]);
         refused(&[("a", "CHK, -1")], &["`CHK, -1`", "at least 0"]);
         refused(&[("a", "CHK, k")], &["k"]);
         refused(&[("a", "L0=3")], &["`L0=3`", "L0=D"]);
         refused(&[], &["states"]);
+    }
+
+    /// Conditions know where ends are, and which way they came.
+    #[test]
+    fn places_are_known() {
+        let gate =
+            link(&[("shut", "SUP, X1.z, 2 -> open"), ("open", "CHK, 0; DIM, X2.x -> shut")], stiff(10.0))
+                .unwrap();
+        assert_eq!(gate.asks_for(), AsksFor { place_on_axis: false, place_in_space: true });
+        let mut memory = [0.0; MEMORY];
+        gate.begin(1.0, 1.0, &mut memory);
+        let mut step = |height: f64, [now, before]: [f64; 2]| {
+            let (first, second) = (Vec3::new(0.0, 0.0, height), [Vec3::X * now, Vec3::X * before]);
+            let moment = Moment { time: 0.0, places: [[first; 2], second] };
+            gate.respond(&Reach { length: 1.5, before: 1.5, rest: 1.0 }, &moment, &mut memory);
+            memory[STATE]
+        };
+        assert_eq!([step(1.9, [0.0; 2]), step(2.1, [0.0; 2])], [0.0, 1.0]);
+        assert_eq!([step(1.0, [0.2, 0.1]), step(1.0, [0.1, 0.2])], [1.0, 0.0]);
+        let on_axis = link(&[("a", "SUP, X1, 1 -> a")], Values::new()).unwrap();
+        assert!(on_axis.asks_for().place_on_axis && !on_axis.asks_for().place_in_space);
     }
 
     /// In a state that waits for its ends to meet nothing happens from the bound on.

@@ -8,7 +8,7 @@ use souple_formal::{Condition, Formula};
 use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
-use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{
     ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula,
 };
@@ -111,18 +111,18 @@ impl WrittenLaw for FiniteState {
         self.states[memory[STATE] as usize].idle_from
     }
 
-    fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
-        let state = self.switch(reach, time, memory);
-        let push = state.push.evaluate(self.arguments(reach, time, memory).as_slice());
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response {
+        let state = self.switch(reach, moment.time, memory);
+        let push = state.push.evaluate(self.arguments(reach, moment.time, memory).as_slice());
         Response { push, stored: 0.0, heat: 0.0 }
     }
 
-    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2] {
         let mut numbers = [0.0; WRITTEN_MEMORY];
         numbers[..memory.len()].copy_from_slice(memory);
         let memory = &mut numbers[..memory.len()];
-        let state = self.switch(reach, time, memory);
-        let values = self.arguments(reach, time, memory);
+        let state = self.switch(reach, moment.time, memory);
+        let values = self.arguments(reach, moment.time, memory);
         [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
             let constants = values.as_slice().iter().map(|value| Dual::constant(*value));
             let mut duals = Arguments::new(Dual::constant(0.0), constants);

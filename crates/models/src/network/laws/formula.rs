@@ -6,7 +6,7 @@ use souple_formal::Formula;
 use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
-use crate::network::law::{LinkEntry, LinkError, Reach, Response};
+use crate::network::law::{LinkEntry, LinkError, Moment, Reach, Response};
 use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formula};
 
 /// What formulas of links may refer to, before the parameters of the scene.
@@ -59,25 +59,25 @@ impl WrittenLaw for Written {
         self.kind == Kind::Energy
     }
 
-    fn respond(&self, reach: &Reach, time: f64, _: &mut [f64]) -> Response {
+    fn respond(&self, reach: &Reach, moment: &Moment, _: &mut [f64]) -> Response {
         let stored = match self.kind {
             Kind::Push => 0.0,
             Kind::Energy => {
-                self.formula.evaluate_dual(self.arguments(reach, time, [0.0; 2]).as_slice()).value
+                self.formula.evaluate_dual(self.arguments(reach, moment.time, [0.0; 2]).as_slice()).value
             }
         };
-        Response { push: self.push(reach, time), stored, heat: 0.0 }
+        Response { push: self.push(reach, moment.time), stored, heat: 0.0 }
     }
 
-    fn slopes(&self, reach: &Reach, time: f64, _: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, moment: &Moment, _: &[f64]) -> [f64; 2] {
         match self.kind {
             Kind::Push => [[1.0, 0.0], [0.0, 1.0]].map(|rates| {
-                self.formula.evaluate_dual(self.arguments(reach, time, rates).as_slice()).derivative
+                self.formula.evaluate_dual(self.arguments(reach, moment.time, rates).as_slice()).derivative
             }),
             Kind::Energy => {
                 // formulas carry one rate: the second comes by a central difference of the first
                 let step = f64::EPSILON.cbrt() * reach.length.abs().max(f64::MIN_POSITIVE);
-                let at = |length| self.push(&Reach { length, ..*reach }, time);
+                let at = |length| self.push(&Reach { length, ..*reach }, moment.time);
                 [(at(reach.length + step) - at(reach.length - step)) / (2.0 * step), 0.0]
             }
         }
@@ -94,7 +94,7 @@ impl WrittenLaw for Written {
     }
 
     fn stiffest(&self, rest: f64) -> f64 {
-        let [now, before] = self.slopes(&Reach { length: rest, before: rest, rest }, 0.0, &[]);
+        let [now, before] = self.slopes(&Reach { length: rest, before: rest, rest }, &Moment::of(0.0), &[]);
         (before - now).max(0.0)
     }
 }

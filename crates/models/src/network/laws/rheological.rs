@@ -3,7 +3,7 @@
 use souple_formal::parse_quantity;
 use souple_table::{Parameter, Value};
 
-use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::rheology::{self, Network};
 use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
 
@@ -28,12 +28,12 @@ impl WrittenLaw for Rheological {
         self.network.memory_len() == 0
     }
 
-    fn respond(&self, reach: &Reach, _: f64, memory: &mut [f64]) -> Response {
+    fn respond(&self, reach: &Reach, _: &Moment, memory: &mut [f64]) -> Response {
         let outcome = self.network.deform(reach.length - reach.rest, self.timestep, memory);
         Response { push: -outcome.effort, stored: outcome.account.stored, heat: outcome.account.heat }
     }
 
-    fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, _: &Moment, memory: &[f64]) -> [f64; 2] {
         let mut numbers = [0.0; WRITTEN_MEMORY];
         numbers[..memory.len()].copy_from_slice(memory);
         let outcome = self.network.deform(reach.length - reach.rest, self.timestep, &mut numbers);

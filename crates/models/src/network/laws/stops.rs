@@ -268,7 +268,7 @@ mod tests {
     use souple_table::{Value, Values};
 
     use super::*;
-    use crate::network::law::Making;
+    use crate::network::law::{Making, Moment};
 
     /// Pieces stay within their error of the exponential, reach it somewhere, grow stiffer with depth, and halving their number
     /// takes four times the error, as chords do.
@@ -288,7 +288,7 @@ mod tests {
             let law = (EXPONENTIAL_PIECES.build)(&Making { values: &values, timestep: 1e-3 }).unwrap();
             let push = |x: f64| {
                 let reach = Reach { length: 1.0 - x, before: 1.0 - x, rest: 1.0 };
-                law.respond(&reach, 0.0, &[]).push
+                law.respond(&reach, &Moment::of(0.0), &[]).push
             };
             let worst = (0..=800).map(|i| {
                 let x = deepest * f64::from(i) / 800.0;

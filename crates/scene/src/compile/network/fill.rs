@@ -1,4 +1,4 @@
-//! Masses that fill shapes get their places.
+//! Masses that fill shapes, or stand where files have points, get their places.
 
 use souple_mesh::BoundingBox;
 use souple_models::contact::Shape;
@@ -9,14 +9,26 @@ use super::super::{Draft, contact, shape};
 use crate::diagnostic::Code;
 use crate::spec::network::{FillSpec, Places};
 
-/// Fills what groups of masses are to fill; what cannot be goes to the log.
+/// Fills what groups of masses are to fill, and reads what they are to stand at; what cannot be goes to the log.
 pub fn fill_all(draft: &mut Draft) {
     let groups = draft.spec.bodies.iter().filter_map(|body| Some((body, body.network.as_ref()?)));
     let mut warnings = Vec::new();
     for (body, group) in
         groups.flat_map(|(body, network)| network.masses.iter().map(move |group| (body, group)))
     {
-        let Places::Filled(fill) = &group.places else { continue };
+        let fill = match &group.places {
+            Places::Filled(fill) => fill,
+            Places::File(file) => {
+                if let Some(mesh) = shape::of_file(draft, &file.site, &file.file, file.scale, &mut warnings) {
+                    let log = &draft.log;
+                    file.take(&mesh.points, |code, message, expected| {
+                        log.add(code, &file.site, message, expected)
+                    });
+                }
+                continue;
+            }
+            _ => continue,
+        };
         let Some(shape) = shape_of(fill, &body.name, draft, &mut warnings) else { continue };
         let outline = shape.outline().map(|outline| BoundingBox::of(outline.surface.points));
         let asked = fill.bounds.map(|[low, high]| BoundingBox { low, high });
@@ -25,8 +37,8 @@ pub fn fill_all(draft: &mut Draft) {
             draft.log.add(Code::MissingKey, &fill.site, message, "box = [[…], […]], where balls may be");
             continue;
         };
-        let FillSpec { spacing, inset, depth, .. } = **fill;
-        match (Filling { spacing, inset, depth, bounds }).fill(shape.as_ref()) {
+        let FillSpec { spacing, inset, depth, gaps, .. } = **fill;
+        match (Filling { spacing, inset, depth, bounds, gaps }).fill(shape.as_ref()) {
             Ok(places) => drop(fill.places.set(places)),
             Err(error) => {
                 draft.log.add(Code::OutOfRange, &fill.site, error.to_string(), "another `spacing`, or `box`");

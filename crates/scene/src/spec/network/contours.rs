@@ -93,14 +93,15 @@ impl ContourSpec {
             _ => (radius, "`radius`"),
         };
         if is_of_balls && step > reach {
-            let message = format!("a step of {step} m passes over balls: {of} is {reach} m");
+            let message = format!("a step of {step:?} m passes over balls: {of} is {reach} m");
             let expected = format!("at most {reach} m, a tenth of the radius where left out");
             reader.log().add(Code::OutOfRange, &reader.site_of("step"), message, expected);
             return None;
         }
         if is_of_balls && reach > STEPS_MAX * step {
-            let message = format!("a step of {step} m goes {:.0} times into {of}, {reach} m", reach / step);
-            let expected = format!("at least {} m, a thousandth", reach / STEPS_MAX);
+            let message =
+                format!("a step of {step:?} m goes {:.3e} times into {of}, {reach:?} m", reach / step);
+            let expected = format!("at least {:?} m, a thousandth", reach / STEPS_MAX);
             reader.log().add(Code::OutOfRange, &reader.site_of("step"), message, expected);
             return None;
         }

@@ -5,7 +5,8 @@ use std::sync::OnceLock;
 use souple_math::Vec3;
 use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
-use souple_table::Range;
+use souple_models::network::Gaps;
+use souple_table::{Range, Value};
 
 use super::super::contact::SHAPE_ENTRY;
 use super::super::mesh::{MESH, MeshSpec};
@@ -41,6 +42,12 @@ pub(super) static FILL: Keys = Keys::new(
             "only so deep below the outermost: a crust, a hollow shape",
         ),
         Key::new(
+            "gaps",
+            Shape::Choice(&["left", "closed"]),
+            "on the surface that are farther than a radius from all balls: `closed` by balls below it",
+        )
+        .or(Value::Text("left")),
+        Key::new(
             "box",
             Shape::Corners,
             "where centres may be; around the shape where left out. A flat one holds a plane of balls",
@@ -59,6 +66,7 @@ pub struct FillSpec {
     pub inset: f64,
     /// [m]
     pub depth: f64,
+    pub gaps: Gaps,
     /// Corners [m].
     pub bounds: Option<[Vec3; 2]>,
     /// [m]
@@ -79,6 +87,7 @@ impl FillSpec {
             spacing,
             inset: reader.maybe_number("inset").unwrap_or(0.5 * spacing),
             depth: reader.maybe_number("depth").unwrap_or(f64::INFINITY),
+            gaps: if reader.choice("gaps") == "closed" { Gaps::Closed } else { Gaps::Left },
             bounds: reader.corners("box").map(|[a, b]| [a.min_components(b), a.max_components(b)]),
             places: OnceLock::new(),
             site: reader.site(),

@@ -217,6 +217,7 @@ impl Between {
             kept_apart: Vec::new(),
             range: self.range,
             friction: self.friction.clone(),
+            fusible: None,
             site: self.site.clone(),
         }
     }

@@ -1,0 +1,75 @@
+//! Energy that grows without work is told, with the date and where; work is not.
+
+use std::path::Path;
+
+use souple_run::{Cause, Control, Options, Outcome, Status, run};
+
+fn go(text: &str, settings: &[&str]) -> Outcome {
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+    let scene = souple_scene::read_text("watched", text, Path::new("."), &settings);
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    run(scene, &Options::default(), &mut |_| Control::Continue).expect("a run")
+}
+
+fn told(outcome: &Outcome) -> Vec<&String> {
+    outcome.report.warnings.iter().filter(|warning| warning.starts_with("energy grew without work")).collect()
+}
+
+const LATTICE: &str = include_str!("../../../scenes/network_lattice/scene.toml");
+
+/// A step four times as long as the links bear: it is warned of once, or ends the run, with the network's name.
+#[test]
+fn blow_up_is_told() {
+    assert!(told(&go(LATTICE, &[])).is_empty());
+    let long = ["systems.main.steps_per_period=1", "run.duration=\"0.4 s\""];
+    let warned = go(LATTICE, &long);
+    assert_eq!(warned.report.status, Status::Done);
+    let told = told(&warned);
+    assert!(told.len() == 1 && told[0].contains("most of it is in `lattice`"), "{told:?}");
+    let stopped = go(LATTICE, &[&long[..], &["run.monitor.stop=true"]].concat());
+    assert_eq!(stopped.report.status, Status::Failed);
+    let failure = stopped.report.failure.expect("why it stopped");
+    assert!(
+        matches!(&failure.cause, Cause::Between(message) if message.starts_with("energy grew without work"))
+    );
+    assert!(stopped.report.steps < warned.report.steps);
+}
+
+/// A mass on a spring, driven where it swings by itself: by the end of its spring, or by a force.
+const DRIVEN: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 10
+[networks.swing.masses.hand]
+positions = [[0, 0, 0]]
+mass = 1
+[networks.swing.masses.bob]
+positions = [[1, 0, 0]]
+mass = 1
+[[networks.swing.links]]
+law = { name = "spring", stiffness = 100 }
+all = true
+[run]
+duration = "20 s"
+monitor = { growth = 0.1 }
+"#;
+
+#[test]
+fn work_is_no_growth() {
+    let held = "[[networks.swing.pins]]\nregion = \"hand\"\n";
+    let led = "motion = { formula = [\"0.01 * sin(10 * t)\", 0, 0] }\n";
+    let places = "[[networks.swing.loads]]\nregion = \"bob\"\n";
+    for (drive, what) in [
+        (format!("{held}{led}"), "led"),
+        (format!("{held}{places}force = [\"sin(10 * t)\", 0, 0]\n"), "a force of time"),
+        (format!("{held}{places}force = [\"sin(10 * t) + 0.001 * y\", 0, 0]\n"), "a force without energy"),
+    ] {
+        let outcome = go(&format!("{DRIVEN}{drive}"), &[]);
+        let [from, to] = [&outcome.report.energy.0, &outcome.report.energy.1].map(|energy| energy.total());
+        assert!(to > from + 10.0, "{what}: it takes in {from} to {to} J");
+        assert!(told(&outcome).is_empty(), "{what}: {:?}", told(&outcome));
+    }
+}
