@@ -276,6 +276,19 @@ mesh = { generate = "box", size = [1, 1, 1], cells = [8, 8, 8], element = "tet4"
 blend = "20 ms"
 "#;
 
+const GROUPED: &str = r#"
+format = 1
+[world]
+period = "1 ms"
+[systems.main]
+stepper = { name = "staggered", halvings = 2 }
+[bodies.cube]
+mesh = { generate = "box", size = [1, 1, 1], cells = [3, 3, 3], element = "hex8" }
+material = { name = "linear", youngs_modulus = "1 kPa", poissons_ratio = 0.3, density = 1000 }
+mass = "uniform"
+octree = { levels = 2 }
+"#;
+
 const FELT: &str = r#"[hands.right]
 device = { name = "emulated", mass = "0.4 kg", stiffness = "300 N/m", damping = 8 }
 tool = { name = "sphere", centre = [0.5, 1.3, 0.5], radius = 0.2 }
@@ -404,6 +417,7 @@ fn every_quantity_is_measured() {
         (&skin, "skin = \"ball\""),
         (&changing, cube),
         (LAYERED, cube),
+        (GROUPED, cube),
         (&felt, "hand = \"right\""),
         (&led, "body = \"cube\"\nbone = \"hand\""),
         (BALLS, "body = \"cube\""),
