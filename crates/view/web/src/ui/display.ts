@@ -77,7 +77,7 @@ export class Display {
       control.addEventListener("change", () => this.read());
     }
     for (const control of [this.place, this.explode]) control.addEventListener("input", () => this.read());
-    this.styleRow = row("Surface", this.style);
+    this.styleRow = row("Style", this.style);
     this.explodeRow = row("Cells apart", this.explode);
     this.otherHalfRow = row("Other half", this.otherHalf);
     this.axesRow = row("Frames' axes", this.axes);
@@ -132,7 +132,7 @@ export class Display {
   setFields({ fields, bodies, skins }: SceneInfo): void {
     const entry = ({ name, summary, unit, classes }: FieldInfo) =>
       element("option", { value: name, title: classes ? summary : `${summary} [${unit || "1"}]` }, label(name));
-    this.styleRow.hidden = skins.length === 0 && bodies.every(({ surface_triangles }) => surface_triangles === 0);
+    this.styleRow.hidden = skins.length === 0 && bodies.every((body) => body.surface_triangles === 0 && !body.is_network);
     this.explodeRow.hidden = !bodies.some(({ has_inside }) => has_inside);
     const here = fields.filter(({ is_here }) => is_here);
     this.field.replaceChildren(element("option", { value: "" }, "Material"), ...here.map(entry));
@@ -149,7 +149,7 @@ export class Display {
     this.axesRow.hidden = !hasFrames;
   }
 
-  /** The next style of surfaces. */
+  /** The next style of surfaces and networks. */
   nextStyle(): void {
     const at = STYLES.findIndex(([style]) => style === this.look.style);
     this.style.value = STYLES[(at + 1) % STYLES.length]![0];
