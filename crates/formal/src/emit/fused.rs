@@ -46,8 +46,10 @@ struct Addend {
 impl Addend {
     fn name(&self, letters: [char; 2]) -> String {
         let letter = letters[usize::from(self.minus.is_empty())];
-        let nodes: Vec<String> = self.plus.iter().chain(&self.minus).map(usize::to_string).collect();
-        format!("{letter}{}", nodes.join("_"))
+        let joined = |nodes: &[usize]| nodes.iter().map(usize::to_string).collect::<Vec<_>>().join("_");
+        // which nodes are taken away is part of the name: `x0 + x1 - x2` is not `x0 - x1 - x2`
+        let less = if self.minus.is_empty() { "" } else { "m" };
+        format!("{letter}{}{less}{}", joined(&self.plus), joined(&self.minus))
     }
 
     fn text(&self) -> String {
@@ -204,11 +206,7 @@ impl<'a> Fields<'a> {
             let sum = self.sum(&terms);
             let is_place = sum.starts_with("s[") && sum.ends_with(']') && sum.matches('[').count() == 1;
             let axis = ["_xi", "_eta", "_zeta"][addend.axis];
-            let name = match addend.minus.is_empty() {
-                _ if is_place => sum.clone(),
-                true => addend.name(['t', 't']) + axis,
-                false => addend.name(['t', 't']),
-            };
+            let name = if is_place { sum.clone() } else { addend.name(['t', 't']) + axis };
             if !is_place {
                 let _ = writeln!(out, "    let {name} = {sum};");
             }
@@ -416,7 +414,7 @@ impl File<'_> {
         };
         let shape = if is_box { ", a box along the axes" } else { "" };
         line(&format!(
-            "//! {}, on `{}`{shape}; derived by `cargo xtask kernels`, and not changed by hand.",
+            "//! {}, on `{}`{shape}; derived from its text by `souple derive --emit kernel`, and not changed by hand.",
             heading.summary, heading.element
         ));
         line("//!\n//! ```text");

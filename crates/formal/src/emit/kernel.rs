@@ -9,7 +9,7 @@ use std::fmt::Write;
 use super::{Text, write};
 use crate::Function;
 use crate::graph::{Comparison, Expr, Graph, Shape};
-use crate::law::EnergyLaw;
+use crate::law::{Block, EnergyLaw, Strain};
 use crate::tape::Code;
 use crate::tape::lower::{Lowered, Place, Request, Step, lower};
 
@@ -24,6 +24,8 @@ pub struct Heading<'a> {
     pub summary: &'a str,
     /// The law as its author wrote it, a line each.
     pub written: &'a [String],
+    /// A type of the program with the law's numbers as its fields; `None`: the file has one of its own.
+    pub numbers: Option<&'a str>,
 }
 
 /// Why a law has no such source.
@@ -61,13 +63,14 @@ pub(super) fn check_names(law: &EnergyLaw) -> Result<(), NoKernel> {
 /// It is written in principal stretches, or with functions that lanes do not have.
 pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
     check_names(law)?;
-    let Heading { name, summary, written } = *heading;
+    let Heading { name, summary, written, numbers } = *heading;
     let parameters: Vec<(&str, Shape)> =
         law.parameters.iter().map(|(name, parameter)| (name.as_str(), parameter.shape())).collect();
     let functions = Functions { law, parameters: &parameters };
     let [energy, stress] = [law.energy, law.stress].map(|output| functions.whole(output));
     let (energy, stress, split) = (energy?, stress?, functions.split()?);
-    let bodies = [&energy, &stress, &split.at, &split.differential];
+    let mut bodies = vec![&energy, &stress, &split.at, &split.differential];
+    bodies.extend(&split.block);
     let uses = |word: &str| bodies.iter().any(|body| body.contains(word)) || split.fields.contains(word);
 
     let mut out = String::new();
@@ -75,7 +78,9 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
         out.push_str(text);
         out.push('\n');
     };
-    line(&format!("//! {summary}; derived from its text by `cargo xtask kernels`, and not changed by hand."));
+    line(&format!(
+        "//! {summary}; derived from its text by `souple derive --emit kernel`, and not changed by hand."
+    ));
     line("//!");
     line("//! ```text");
     for text in written.iter().flat_map(|text| text.lines()) {
@@ -83,7 +88,10 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
     }
     line("//! ```");
     line("");
-    let vectors = if uses("Vec3") || parameters.iter().any(|(_, shape)| *shape == Shape::Vector) {
+    let vectors = if split.block.is_some()
+        || uses("Vec3")
+        || parameters.iter().any(|(_, shape)| *shape == Shape::Vector)
+    {
         ", Vec3"
     } else {
         ""
@@ -93,44 +101,75 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
     if uses("cofactor_differential(") {
         line("use crate::materials::invariants::cofactor_differential;");
     }
-    line("use crate::materials::{Law, Parameters};");
+    match numbers {
+        Some(numbers) => line(&format!("use crate::materials::{{{numbers} as Numbers, Law}};")),
+        None => line("use crate::materials::{Law, Parameters};"),
+    }
     line("");
     line("/// See the module.");
     line("#[derive(Clone, Copy, Debug)]");
     line(&format!("pub struct {name};"));
     line("");
-    line("/// The law's numbers.");
-    line("#[derive(Clone, Copy, Debug)]");
-    line("pub struct Numbers<R> {");
-    for (name, shape) in &parameters {
-        let kind = if *shape == Shape::Vector { "Vec3<R>" } else { "R" };
-        line(&format!("    pub {name}: {kind},"));
+    if numbers.is_none() {
+        line("/// The law's numbers.");
+        line("#[derive(Clone, Copy, Debug)]");
+        line("pub struct Numbers<R> {");
+        for (name, shape) in &parameters {
+            let kind = if *shape == Shape::Vector { "Vec3<R>" } else { "R" };
+            line(&format!("    pub {name}: {kind},"));
+        }
+        line("}");
+        line("");
+        line(&packing(&parameters));
     }
-    line("}");
-    line("");
-    line(&packing(&parameters));
-    line("/// What differentials at one `F` share.");
-    line("#[derive(Clone, Copy, Debug)]");
-    line("pub struct Point<R> {");
-    out.push_str(&split.fields);
+    let has_point = !split.fields.is_empty();
+    if has_point {
+        line("/// What differentials at one `F` share.");
+        line("#[derive(Clone, Copy, Debug)]");
+        line("pub struct Point<R> {");
+        out.push_str(&split.fields);
+        out.push_str("}\n\n");
+    }
     let signature = |head: &str, body: &str| {
         // a name that nothing reads would be told by the compiler
         let reads = |word: &str| body.lines().any(|text| text.contains(word));
-        let numbers = if reads("p.") { "p" } else { "_" };
-        format!("    #[inline(always)]\n    fn {}\n{body}    }}\n", head.replace("$p", numbers))
+        let argument = |is_read: bool, name: &'static str| if is_read { name } else { "_" };
+        let head = head.replace("$point", argument(reads("point."), "point"));
+        let head = head.replace("$p", argument(reads("p."), "p"));
+        let head = head.replace("$F", argument(!body.is_empty(), "F"));
+        let end = if body.is_empty() { "}\n".to_owned() } else { format!("\n{body}    }}\n") };
+        format!("    #[inline(always)]\n    fn {head}{end}")
     };
-    out.push_str("}\n\n");
     let _ = writeln!(out, "impl Law for {name} {{");
-    out.push_str("    type Parameters<R: Real> = Numbers<R>;\n    type Point<R: Real> = Point<R>;\n\n");
-    let functions = [
-        ("at<R: Real>($p: &Numbers<R>, F: &Mat3<R>) -> Point<R> {", &split.at),
+    out.push_str("    type Parameters<R: Real> = Numbers<R>;\n");
+    let point = if has_point { "Point<R>" } else { "()" };
+    let _ = writeln!(out, "    type Point<R: Real> = {point};\n");
+    if law.strain == Strain::Small {
+        out.push_str("    const OBJECTIVE: bool = false;\n");
+    }
+    if law.is_linear() {
+        out.push_str("    const LINEAR: bool = true;\n");
+    }
+    if law.strain == Strain::Small || law.is_linear() {
+        out.push('\n');
+    }
+    let at = if has_point { "$F: &Mat3<R>) -> Point<R> {" } else { "_: &Mat3<R>) {" };
+    let at = format!("at<R: Real>($p: &Numbers<R>, {at}");
+    let differential = format!(
+        "stress_differential<R: Real>($p: &Numbers<R>, $point: &{point}, dF: &Mat3<R>) -> Mat3<R> {{"
+    );
+    let of_block = format!(
+        "tangent_block<R: Real>($p: &Numbers<R>, $point: &{point}, g_a: Vec3<R>, g_b: Vec3<R>) -> Mat3<R> {{"
+    );
+    let mut functions = vec![
+        (&*at, &split.at),
         ("energy_density<R: Real>($p: &Numbers<R>, F: &Mat3<R>) -> R {", &energy),
         ("stress<R: Real>($p: &Numbers<R>, F: &Mat3<R>) -> Mat3<R> {", &stress),
-        (
-            "stress_differential<R: Real>($p: &Numbers<R>, point: &Point<R>, dF: &Mat3<R>) -> Mat3<R> {",
-            &split.differential,
-        ),
+        (&differential, &split.differential),
     ];
+    if let Some(block) = &split.block {
+        functions.push((&of_block, block));
+    }
     let functions: Vec<String> = functions.iter().map(|(head, body)| signature(head, body)).collect();
     out.push_str(&functions.join("\n"));
     out.push_str("}\n");
@@ -180,35 +219,35 @@ struct Split {
     fields: String,
     at: String,
     differential: String,
+    /// Where the law has one of its own.
+    block: Option<String>,
 }
 
 impl Functions<'_> {
-    fn lowered(&self, output: Expr) -> Lowered {
-        let mut graph = self.law.graph.clone();
+    fn lowered(&self, graph: &Graph, varying: &[Expr], outputs: &[Expr]) -> Lowered {
+        let mut graph = graph.clone();
         let parameters = self.parameters.iter().map(|(name, shape)| graph.symbol(name, *shape));
         let first: Vec<Expr> = std::iter::once(self.law.deformation).chain(parameters).collect();
-        let request = Request {
-            graph: &graph,
-            inputs: [&first, &[self.law.variation]],
-            definitions: &[],
-            outputs: &[output],
-        };
+        let request = Request { graph: &graph, inputs: [&first, varying], definitions: &[], outputs };
         lower(&request, |symbol| unreachable!("`{}` is a parameter", symbol.name))
     }
 
-    fn writer<'l>(&'l self, lowered: &'l Lowered) -> Writer<'l> {
+    fn writer<'l>(&self, graph: &'l Graph, lowered: &'l Lowered) -> Writer<'l> {
         let mut texts = BTreeMap::from([(lowered.inputs[0][0].value, "F".to_owned())]);
         for (place, (name, _)) in lowered.inputs[0][1..].iter().zip(self.parameters) {
             texts.insert(place.value, format!("p.{name}"));
         }
-        texts.insert(lowered.inputs[1][0].value, "dF".to_owned());
-        Writer::new(&self.law.graph, lowered, texts)
+        for (place, name) in lowered.inputs[1].iter().zip(["dF", "g_a", "g_b"]) {
+            texts.insert(place.value, name.to_owned());
+        }
+        Writer::new(graph, lowered, texts)
     }
 
     /// The body of a function of `F` and the parameters.
     fn whole(&self, output: Expr) -> Result<String, NoKernel> {
-        let lowered = self.lowered(output);
-        let mut writer = self.writer(&lowered);
+        let graph = &self.law.graph;
+        let lowered = self.lowered(graph, &[self.law.variation], &[output]);
+        let mut writer = self.writer(graph, &lowered);
         let steps: Vec<&Step> = lowered.steps.iter().flatten().collect();
         let steps = needed(&steps, &lowered.outputs);
         let body = writer.body(&steps)?;
@@ -217,8 +256,16 @@ impl Functions<'_> {
     }
 
     fn split(&self) -> Result<Split, NoKernel> {
-        let lowered = self.lowered(self.law.differential);
-        let mut writer = self.writer(&lowered);
+        let Self { law, .. } = self;
+        let block = law.block();
+        let (graph, mut varying, mut outputs) = (&law.graph, vec![law.variation], vec![law.differential]);
+        let graph = block.as_ref().map_or(graph, |Block { graph, gradients, stiffness }| {
+            varying.extend(gradients);
+            outputs.push(*stiffness);
+            graph
+        });
+        let lowered = self.lowered(graph, &varying, &outputs);
+        let mut writer = self.writer(graph, &lowered);
         let all: Vec<&Step> = lowered.steps.iter().flatten().collect();
         let all = needed(&all, &lowered.outputs);
         let first_out: HashSet<usize> = lowered.steps[0].iter().map(|step| step.out.value).collect();
@@ -254,14 +301,23 @@ impl Functions<'_> {
             let _ = writeln!(fields, "    {name}: {},", type_of(*size));
         }
         let list: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
-        let at = finished(&at, &braced("        ", "Point", &list), &["F"]);
+        let at = if list.is_empty() {
+            String::new()
+        } else {
+            finished(&at, &braced("        ", "Point", &list), &["F"])
+        };
         for (value, (name, _)) in kept.iter().zip(&names) {
             writer.texts.insert(*value, format!("point.{name}"));
         }
-        let body = writer.body(&second)?;
-        let result = writer.read(lowered.outputs[0], lowered.sizes[lowered.outputs[0].value]);
-        let differential = finished(&body, &format!("        {result}\n"), &["dF"]);
-        Ok(Split { fields, at, differential })
+        let mut bodies = lowered.outputs.iter().zip(["dF.columns[0].x", "g_a.x"]).map(|(output, like)| {
+            let body = writer.body(&needed(&second, &[*output]))?;
+            let result = writer.read(*output, lowered.sizes[output.value]);
+            let by_value: &[&str] = if like.starts_with("dF") { &["dF"] } else { &[] };
+            Ok(finished_like(&body, &format!("        {result}\n"), by_value, like))
+        });
+        let differential = bodies.next().transpose()?.unwrap_or_default();
+        let block = bodies.next().transpose()?;
+        Ok(Split { fields, at, differential, block })
     }
 }
 
@@ -282,13 +338,18 @@ fn plus(text: &str, number: f64) -> String {
 
 /// A body with its beginning: matrices by value, and a one to make constants beside.
 pub(super) fn finished(body: &str, end: &str, matrices: &[&str]) -> String {
+    let like =
+        matrices.first().map_or_else(|| "volume".to_owned(), |matrix| format!("{matrix}.columns[0].x"));
+    finished_like(body, end, matrices, &like)
+}
+
+/// The same with the number `like` to make constants beside.
+fn finished_like(body: &str, end: &str, matrices: &[&str], like: &str) -> String {
     let mut begin = String::new();
     for matrix in matrices {
         let _ = writeln!(begin, "        let {matrix} = *{matrix};");
     }
     if body.contains("one.") || body.contains("one /") || end.contains("one.") {
-        let like =
-            matrices.first().map_or_else(|| "volume".to_owned(), |matrix| format!("{matrix}.columns[0].x"));
         let _ = writeln!(begin, "        let one = {like}.one();");
     }
     // what was named last is what is returned
@@ -315,6 +376,27 @@ pub(super) fn needed<'l>(steps: &[&'l Step], outputs: &[Place]) -> Vec<&'l Step>
     kept
 }
 
+/// Products `u vᵀ` among the steps that one step reads, which scales them, and of what they are.
+fn scaled_outers(steps: &[&Step], outputs: &[Place]) -> HashMap<usize, [Place; 2]> {
+    let mut reads: HashMap<usize, usize> = HashMap::new();
+    for place in steps.iter().flat_map(|step| step.operands.iter().flatten()).chain(outputs) {
+        *reads.entry(place.value).or_default() += 1;
+    }
+    let scaled = |step: &Step| match (step.code, step.operands) {
+        (Code::Scale | Code::ScaleAdd, [_, Some(a), ..]) => vec![a],
+        (Code::Combine, [s, Some(a), t, Some(b), _]) if s != t => vec![a, b],
+        _ => Vec::new(),
+    };
+    let scaled: HashSet<usize> =
+        steps.iter().flat_map(|step| scaled(step)).map(|place| place.value).collect();
+    let of_outer = |step: &&Step| match (step.code, step.operands) {
+        (Code::Outer, [Some(u), Some(v), ..]) => Some((step.out.value, [u, v])),
+        _ => None,
+    };
+    let outers = steps.iter().filter_map(of_outer);
+    outers.filter(|(value, _)| scaled.contains(value) && reads.get(value) == Some(&1)).collect()
+}
+
 pub(super) struct Writer<'l> {
     graph: &'l Graph,
     lowered: &'l Lowered,
@@ -326,6 +408,8 @@ pub(super) struct Writer<'l> {
     meant: HashMap<usize, Expr>,
     /// Operands and kinds of comparisons, by their values.
     compared: HashMap<usize, (Comparison, Place, Place)>,
+    /// Products `u vᵀ` that are scaled where they are used: three multiplications, where scaling the matrix takes nine.
+    outers: HashMap<usize, [Place; 2]>,
     /// Entries of values that are put together.
     packed: HashMap<usize, Vec<Option<String>>>,
     /// Numbers, vectors and matrices named so far.
@@ -349,6 +433,7 @@ impl<'l> Writer<'l> {
             numbers,
             meant,
             compared: HashMap::new(),
+            outers: HashMap::new(),
             packed: HashMap::new(),
             counts: [0; 3],
         }
@@ -356,7 +441,11 @@ impl<'l> Writer<'l> {
 
     pub fn body(&mut self, steps: &[&Step]) -> Result<String, NoKernel> {
         let mut out = String::new();
+        self.outers = scaled_outers(steps, &self.lowered.outputs);
         for step in steps {
+            if self.outers.contains_key(&step.out.value) {
+                continue;
+            }
             if let Some(value) = self.value(step)? {
                 let name = self.name(self.lowered.sizes[step.out.value]);
                 let comment = self.meaning(step.out.value);
@@ -432,6 +521,11 @@ impl<'l> Writer<'l> {
             _ => format!("{} * {}", number(a), number(b)),
         };
         let scaled = |factor: usize, of: usize| match (self.fixed(place(factor)), entries) {
+            (fixed, 9) if self.outers.contains_key(&place(of).value) => {
+                let [u, v] = self.outers[&place(of).value].map(|place| self.read(place, 3));
+                let factor = fixed.map_or_else(|| number(factor), |factor| format!("{factor:?}"));
+                format!("({u} * {factor}).outer({v})")
+            }
             (Some(factor), _) => format!("{} * {factor:?}", tensor(of)),
             (None, 9) => format!("{}.scaled({})", tensor(of), number(factor)),
             (None, _) => format!("{} * {}", tensor(of), number(factor)),
@@ -487,6 +581,14 @@ impl<'l> Writer<'l> {
             }
             Code::Scale => scaled(0, 1),
             Code::ScaleAdd => format!("{} + {}", scaled(0, 1), tensor(2)),
+            Code::Combine if place(0) == place(2) && self.fixed(place(0)).is_none() => {
+                let sum = format!("({} + {})", tensor(1), tensor(3));
+                if entries == 9 {
+                    format!("{sum}.scaled({})", number(0))
+                } else {
+                    format!("{sum} * {}", number(0))
+                }
+            }
             Code::Combine => format!("{} + {}", scaled(0, 1), scaled(2, 3)),
             Code::PlusDiagonal => format!("{}.plus_diagonal({})", matrix(0), number(1)),
             Code::Product => format!("{} * {}", matrix(0), matrix(1)),

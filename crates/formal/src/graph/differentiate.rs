@@ -73,7 +73,7 @@ impl Graph {
             Node::Select(condition, value, otherwise) => {
                 let zero = self.number(0.0);
                 let (value, otherwise) = (d(value).unwrap_or(zero), d(otherwise).unwrap_or(zero));
-                terms.push(self.select(condition, value, otherwise));
+                terms.push(self.select_of_multiples(condition, value, otherwise));
             }
             Node::Scale(a, b) => self.product_rule(&mut terms, (a, b), &d, Self::scale),
             Node::Multiply(a, b) => self.product_rule(&mut terms, (a, b), &d, Self::multiply),
@@ -313,6 +313,86 @@ impl Graph {
                 unreachable!("an energy has no differentials in it")
             }
             _ => self.push_to_invariants(expr, adjoint, dependent, adjoints),
+        }
+    }
+
+    /// A choice of two numbers with the factors before it that both have: rates of one invariant, mostly, so that what is chosen does
+    /// not vary with the direction. Zero has every factor that is finite wherever `F` is.
+    fn select_of_multiples(&mut self, condition: Expr, value: Expr, otherwise: Expr) -> Expr {
+        let [first, second] = [value, otherwise].map(|branch| self.factors_of(branch));
+        let zero_has = |graph: &Self, factor: &Expr| graph.is_polynomial(*factor);
+        let common: Vec<Expr> = match (self.is_zero(value), self.is_zero(otherwise)) {
+            (true, _) => second.into_iter().filter(|factor| zero_has(self, factor)).collect(),
+            (_, true) => first.into_iter().filter(|factor| zero_has(self, factor)).collect(),
+            _ => first.into_iter().filter(|factor| second.contains(factor)).collect(),
+        };
+        let [value, otherwise] = [value, otherwise].map(|branch| self.without_factors(branch, &common));
+        let chosen = self.select(condition, value, otherwise);
+        let factors: Vec<Expr> = common.into_iter().chain([chosen]).collect();
+        self.product(&factors)
+    }
+
+    /// What a product is of, or all addends of a sum have; numbers are none.
+    fn factors_of(&self, expr: Expr) -> Vec<Expr> {
+        match self.node(expr) {
+            Node::Number(_) => Vec::new(),
+            Node::Product(factors) => {
+                factors.iter().copied().filter(|factor| self.value(*factor).is_none()).collect()
+            }
+            Node::Sum(terms) => {
+                let mut common = self.factors_of(terms[0]);
+                for term in &terms[1..] {
+                    let factors = self.factors_of(*term);
+                    common.retain(|factor| factors.contains(factor));
+                }
+                if common.is_empty() { vec![expr] } else { common }
+            }
+            _ => vec![expr],
+        }
+    }
+
+    /// What stands beside factors that [`Self::factors_of`] gives; of zero it is zero.
+    fn without_factors(&mut self, expr: Expr, common: &[Expr]) -> Expr {
+        if common.is_empty() || self.is_zero(expr) {
+            return expr;
+        }
+        match self.node(expr).clone() {
+            Node::Sum(terms) if !common.contains(&expr) => {
+                let terms: Vec<Expr> = terms.iter().map(|term| self.without_factors(*term, common)).collect();
+                self.sum(&terms)
+            }
+            Node::Product(factors) => {
+                let rest: Vec<Expr> =
+                    factors.iter().copied().filter(|factor| !common.contains(factor)).collect();
+                self.product(&rest)
+            }
+            _ => self.number(1.0),
+        }
+    }
+
+    /// Whether it is a sum of products of entries of symbols.
+    fn is_polynomial(&self, expr: Expr) -> bool {
+        match self.node(expr) {
+            Node::Number(_) | Node::Symbol(_) | Node::Zero(_) | Node::Identity => true,
+            Node::Power(base, exponent) => {
+                let is_whole = |value: f64| value >= 0.0 && value.fract() == 0.0;
+                self.value(*exponent).is_some_and(is_whole) && self.is_polynomial(*base)
+            }
+            Node::Sum(_)
+            | Node::Product(_)
+            | Node::Scale(..)
+            | Node::Multiply(..)
+            | Node::Apply(..)
+            | Node::Transpose(_)
+            | Node::Dot(..)
+            | Node::Trace(_)
+            | Node::Determinant(_)
+            | Node::Cofactor(_)
+            | Node::Cross(..)
+            | Node::Outer(..)
+            | Node::Entry(..)
+            | Node::Pack(_) => self.node(expr).operands().all(|operand| self.is_polynomial(operand)),
+            _ => false,
         }
     }
 

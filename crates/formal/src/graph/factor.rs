@@ -41,8 +41,11 @@ impl Graph {
         let addends: Vec<Expr> = of_factor
             .into_iter()
             .map(|(left, addends)| {
+                // `a E` with `E = C/2 - I/2` is part of this sum, not one of its own
+                let rests: Vec<(Expr, Expr)> =
+                    addends.into_iter().flat_map(|(scale, rest)| self.scaled_addends(rest, scale)).collect();
                 let rests: Vec<Expr> =
-                    addends.into_iter().map(|(scale, rest)| self.scale(scale, rest)).collect();
+                    rests.into_iter().map(|(scale, rest)| self.scale(scale, rest)).collect();
                 let rest = self.sum(&rests);
                 self.multiply(left, rest)
             })

@@ -46,7 +46,7 @@ impl Graph {
     }
 
     /// The factor of a scaled tensor and the tensor.
-    fn split_scale(&self, expr: Expr) -> (Option<Expr>, Expr) {
+    pub(crate) fn split_scale(&self, expr: Expr) -> (Option<Expr>, Expr) {
         match self.node(expr) {
             Node::Scale(factor, tensor) => (Some(*factor), *tensor),
             _ => (None, expr),

@@ -13,9 +13,10 @@ use crate::graph::{Comparison, Expr, Graph, Node};
 pub const SMALLEST_VOLUME: f64 = 0.05;
 
 impl EnergyLaw {
-    /// The law with `m(J)` for `J = det F` in powers that are not whole and positive, and in logarithms: `m = J` down to
-    /// [`SMALLEST_VOLUME`] `J₀`, and below `m = J₀ (1 - x)/(1 - 2x + 2x²)` with `x = J/J₀ - 1`, whose value, slope and curvature are
-    /// those of `J` at `J₀`. So energy, stress and tangent stay continuous, and inverted elements are pushed back.
+    /// The law with `m(J)` for `J = det F` in powers that are not whole and positive: `m = J` down to [`SMALLEST_VOLUME`] `J₀`, and below
+    /// `m = J₀ (1 - x)/(1 - 2x + 2x²)` with `x = J/J₀ - 1`, whose value, slope and curvature are those of `J` at `J₀`; and with
+    /// `ln J₀ + x - x²/2` for `ln J` below `J₀`, its Taylor polynomial of degree two. So energy, stress and tangent stay continuous, and
+    /// inverted elements are pushed back.
     pub fn continued(&self) -> Self {
         let mut law = self.clone();
         let J = {
@@ -31,7 +32,7 @@ impl EnergyLaw {
                     law.graph.power(m, exponent)
                 }
                 Node::Function(function @ (Function::Ln | Function::Log10), argument) if argument == J => {
-                    law.graph.function(function, m)
+                    logarithm(&mut law.graph, J, function)
                 }
                 _ => continue,
             };
@@ -48,13 +49,28 @@ fn has_pole(graph: &Graph, exponent: Expr) -> bool {
     graph.value(exponent).is_none_or(|exponent| exponent < 0.0 || exponent.fract() != 0.0)
 }
 
+/// The logarithm of `J` with its Taylor polynomial of degree two below the least volume.
+fn logarithm(graph: &mut Graph, J: Expr, function: Function) -> Expr {
+    let (least, minus_one) = (graph.number(SMALLEST_VOLUME), graph.number(-1.0));
+    let is_below = graph.compare(Comparison::Less, J, least);
+    let ratio = graph.times_number(1.0 / SMALLEST_VOLUME, J);
+    let x = graph.sum(&[ratio, minus_one]);
+    let square = graph.power_number(x, 2.0);
+    let curved = graph.times_number(-0.5, square);
+    let natural = graph.number(libm::log(SMALLEST_VOLUME));
+    let mut polynomial = graph.sum(&[natural, x, curved]);
+    if function == Function::Log10 {
+        polynomial = graph.times_number(std::f64::consts::LOG10_E, polynomial);
+    }
+    let above = graph.function(function, J);
+    graph.select(is_below, polynomial, above)
+}
+
 /// `m(J)`.
 fn bounded(graph: &mut Graph, J: Expr) -> Expr {
     let [one, two, least] = [1.0, 2.0, SMALLEST_VOLUME].map(|value| graph.number(value));
     let is_below = graph.compare(Comparison::Less, J, least);
-    // where it is not looked at, the continuation must not overflow
-    let looked_at = graph.select(is_below, J, least);
-    let ratio = graph.times_number(1.0 / SMALLEST_VOLUME, looked_at);
+    let ratio = graph.times_number(1.0 / SMALLEST_VOLUME, J);
     let x = graph.subtract(ratio, one);
     let above = graph.subtract(one, x);
     // 1 - 2x + 2x²: at least a half

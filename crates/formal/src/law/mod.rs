@@ -4,6 +4,7 @@
 //! directions, …, see `vocabulary.rs`), with units checked on the way; then `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` are derived.
 //! Before a law is handed out it has been tried: a value, no stress and a slope at rest, objectivity.
 
+mod block;
 mod calls;
 mod check;
 mod continued;
@@ -15,6 +16,7 @@ mod read;
 mod value;
 mod vocabulary;
 
+pub use block::Block;
 pub use continued::SMALLEST_VOLUME;
 pub use error::{LawError, LawProblem, UnitClash, WantedUnits};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};

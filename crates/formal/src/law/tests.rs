@@ -630,3 +630,51 @@ fn formulas_of_numbers_have_no_deformation() {
     let error = group_constants("I4([1, 0, 0]) + F*x", &["x".to_owned()]).expect_err("a deformation");
     assert!(error.to_string().contains("there is no function `I4`"), "{error}");
 }
+
+/// The stiffness between two nodes is the differential along `u ⊗ b` times `a`, for laws of tensors, and no law of stretches has one.
+#[test]
+fn blocks_are_differentials_along_a_gradient() {
+    let moduli = [("p", 3.0), ("q", 7.0)];
+    for energy in [
+        "p/2*tr(eps)^2 + q*dot(eps, eps)",
+        "p/2*tr(E)^2 + q*dot(E, E)",
+        "q/2*(I1 - 3) - q*log(J) + p/2*log(J)^2",
+        "p*(I1_bar - 3) + q*(I2_bar - 3) + p/2*(J - 1)^2",
+        "q/2*(exp(3*dot(E, E)) - 1) + p/2*tr(E)^2",
+        "p/2*(max(I1 - 3, 0))^2 + q/2*(J - 1)^2 + q*(I1_bar - 3)",
+    ] {
+        let law = law(energy, &moduli);
+        let Block { graph, gradients: [a, b], stiffness } = law.block().unwrap();
+        let (g_a, g_b) = ([0.3, -0.7, 1.1], [-0.4, 0.9, 0.2]);
+        let F = [1.1, 0.1, -0.2, 0.05, 0.9, 0.15, 0.2, -0.1, 1.2];
+        let value = |graph: &Graph, root: Expr, dF: [f64; 9]| -> Vec<f64> {
+            let held = [
+                ("F", F.to_vec()),
+                ("dF", dF.to_vec()),
+                ("p", vec![3.0]),
+                ("q", vec![7.0]),
+                ("@g_a", g_a.to_vec()),
+                ("@g_b", g_b.to_vec()),
+            ];
+            let held: std::collections::HashMap<&str, Vec<f64>> = held.into_iter().collect();
+            let all = graph.reachable(&[root]);
+            graph.evaluate(&all, |symbol| &held[symbol.name.as_str()]).of(root).to_vec()
+        };
+        assert!(graph.symbol_of(a).is_some() && graph.symbol_of(b).is_some());
+        let K = value(&graph, stiffness, [0.0; 9]);
+        for axis in 0..3 {
+            // u is an axis: δF = u ⊗ b has one row
+            let dF = std::array::from_fn(|i| if i % 3 == axis { g_b[i / 3] } else { 0.0 });
+            let dP = value(&law.graph, law.differential, dF);
+            for row in 0..3 {
+                let expected: f64 = (0..3).map(|column| dP[3 * column + row] * g_a[column]).sum();
+                let found = K[3 * axis + row];
+                assert!(
+                    (found - expected).abs() < 1e-12 * (1.0 + expected.abs()),
+                    "{energy}: {found} {expected}"
+                );
+            }
+        }
+    }
+    assert!(law("q*(l1^2 + l2^2 + l3^2 - 3) - q*log(J^2)", &moduli).block().is_none());
+}

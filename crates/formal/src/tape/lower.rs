@@ -1,5 +1,6 @@
 //! From the graph to instructions on values.
 
+use std::cmp::Reverse;
 use std::collections::{HashMap, HashSet};
 
 use super::Code;
@@ -57,8 +58,6 @@ struct Lowering<'a> {
     uses: HashMap<Expr, usize>,
     reachable: HashSet<Expr>,
     places: HashMap<Expr, Place>,
-    /// Powers of a base at hand, by exponents that are not whole.
-    powers: HashMap<Expr, Vec<(f64, Place)>>,
     numbers: HashMap<u64, Place>,
     /// Products of two numbers at hand.
     multiplied: HashMap<(Place, Place), Place>,
@@ -103,7 +102,6 @@ pub(crate) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64
         uses,
         reachable: reachable.into_iter().collect(),
         places: HashMap::new(),
-        powers: HashMap::new(),
         numbers: HashMap::new(),
         multiplied: HashMap::new(),
         part_of: Vec::new(),
@@ -212,8 +210,7 @@ impl Lowering<'_> {
             Node::Sum(terms) => self.tensor_sum(&terms, len),
             Node::Product(_) => {
                 let (a, b, divides) = self.product(expr);
-                let code = if divides { Code::Divide } else { Code::Multiply };
-                self.emit(code, 1, 1, &[a, b])
+                if divides { self.emit(Code::Divide, 1, 1, &[a, b]) } else { self.multiply_two(a, b) }
             }
             Node::Power(base, exponent) => self.power(base, exponent),
             Node::Function(function, a) => {
@@ -498,26 +495,15 @@ impl Lowering<'_> {
         }
         // powers of one base that differ by whole exponents cost one transcendental function: that of the exponent nearest to
         // zero, and from there away from it, so that zero to the power of a half is not zero over zero
-        let nearest = self.nearest_to_zero(base, value);
-        let known = self.powers.get(&base).and_then(|known| {
-            known.iter().copied().find(|(known, _)| {
-                let further = value - known;
-                further.fract() == 0.0
-                    && further.abs() <= MOST_MULTIPLIED
-                    && further * value >= 0.0
-                    && known / value > 0.0
-            })
-        });
-        let (start, place) = match known {
-            Some(known) => known,
-            None => (nearest, self.transcendental_power(base, at, nearest)),
-        };
-        if start == value {
-            return place;
+        match self.nearest_to_zero(base, value) {
+            Some((nearest, start)) => {
+                let start = self.place(start);
+                let power = self.whole_power(at, (value - nearest).abs().round() as u8);
+                let code = if value < 0.0 { Code::Divide } else { Code::Multiply };
+                self.emit(code, 1, 1, &[start, power])
+            }
+            None => self.transcendental_power(at, value),
         }
-        let power = self.whole_power(at, (value - start).abs() as u8);
-        let code = if value < 0.0 { Code::Divide } else { Code::Multiply };
-        self.emit(code, 1, 1, &[place, power])
     }
 
     /// A power of `base` among what is computed whose exponent is a small whole part of `value`, and which part: the least exponent.
@@ -531,35 +517,35 @@ impl Lowering<'_> {
             }
             _ => None,
         };
-        self.reachable.iter().filter_map(part).max_by_key(|(_, times)| *times)
+        // of several the same one every time, whatever order sets have
+        self.reachable.iter().filter_map(part).max_by_key(|(root, times)| (*times, Reverse(*root)))
     }
 
-    /// Of the exponents of `base` that differ from `value` by a small whole number and have its sign, the least.
-    fn nearest_to_zero(&self, base: Expr, value: f64) -> f64 {
+    /// Of the powers of `base` among what is computed whose exponents differ from `value` by a small whole number and have its sign, the
+    /// one nearest to zero, where it is nearer than `value`.
+    fn nearest_to_zero(&self, base: Expr, value: f64) -> Option<(f64, Expr)> {
         let of_base = |expr: &Expr| match *self.graph.node(*expr) {
-            Node::Power(other, exponent) if other == base => self.graph.value(exponent),
+            Node::Power(other, exponent) if other == base => Some((self.graph.value(exponent)?, *expr)),
             _ => None,
         };
-        let near = |exponent: &f64| {
-            (value - exponent).fract() == 0.0 && (value - exponent).abs() <= 4.0 && exponent / value > 0.0
+        let is_near = |(exponent, _): &(f64, Expr)| {
+            let further = value - exponent;
+            // thirds are rounded: `-4/3 - -7/3` is not quite one
+            let is_whole = (further - further.round()).abs() <= 2.0 * f64::EPSILON * value.abs();
+            let times = further.round();
+            is_whole && (1.0..=4.0).contains(&times.abs()) && times * value > 0.0 && exponent / value > 0.0
         };
-        let exponents = self.reachable.iter().filter_map(of_base).filter(near);
-        exponents.fold(value, |least, other| if other.abs() < least.abs() { other } else { least })
+        let near = self.reachable.iter().filter_map(of_base).filter(is_near);
+        near.min_by(|(a, first), (b, second)| a.abs().total_cmp(&b.abs()).then(first.cmp(second)))
     }
 
-    fn transcendental_power(&mut self, base: Expr, at: Place, value: f64) -> Place {
-        let place = if value.abs() == 0.5 {
+    fn transcendental_power(&mut self, at: Place, value: f64) -> Place {
+        if value.abs() == 0.5 {
             let root = self.emit(Code::SquareRoot, 1, 1, &[at]);
-            if value < 0.0 { self.reciprocal(root) } else { root }
-        } else {
-            let exponent = self.number(value);
-            self.emit(Code::Power, 1, 1, &[at, exponent])
-        };
-        // what is computed with a variation cannot serve what is computed before it
-        if self.part == 0 {
-            self.powers.entry(base).or_default().push((value, place));
+            return if value < 0.0 { self.reciprocal(root) } else { root };
         }
-        place
+        let exponent = self.number(value);
+        self.emit(Code::Power, 1, 1, &[at, exponent])
     }
 
     fn whole_power(&mut self, base: Place, exponent: u8) -> Place {

@@ -15,7 +15,13 @@ use crate::materials::{WrittenLaw, lines_of};
 /// It is written in principal stretches, or with functions that lanes do not have.
 pub fn law_kernel(name: &str, text: &LawText, law: &EnergyLaw) -> Result<String, NoKernel> {
     let (type_name, lines) = (type_name(name), lines_of(text));
-    write_law(&law.continued(), &Heading { name: &type_name, summary: summary(name), written: &lines })
+    let heading = Heading {
+        name: &type_name,
+        summary: summary(name),
+        written: &lines,
+        numbers: has_lame_moduli(law).then_some("Lame"),
+    };
+    write_law(&law.continued(), &heading)
 }
 
 /// A law on an element, with every sample of a rule written out, as a file of [`crate::solids`].
@@ -43,6 +49,13 @@ pub fn element_kernel(
         written: &lines_of(text),
     };
     write_element(&data, &law.continued(), &heading)
+}
+
+/// Whether its numbers are Lamé's, for which there is a type.
+fn has_lame_moduli(law: &EnergyLaw) -> bool {
+    let mut names: Vec<&str> = law.parameters.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    names == ["lambda", "mu"]
 }
 
 fn summary(name: &str) -> &str {

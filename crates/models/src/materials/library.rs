@@ -112,10 +112,16 @@ impl WrittenLaw {
         WRITTEN_LAWS.iter().find(|law| law.name == name)
     }
 
+    /// The energy with its parts, `energy; name = part`, without numbers.
+    pub fn formula(&self) -> String {
+        self.definitions
+            .iter()
+            .fold(self.energy.to_owned(), |text, (name, part)| format!("{text}; {name} = {part}"))
+    }
+
     /// All of it in one text, `energy; name = part; name = value`, as `souple derive --law` reads it.
     pub fn written(&self) -> String {
-        let named = self.definitions.iter().chain(self.parameters);
-        named.fold(self.energy.to_owned(), |text, (name, value)| format!("{text}; {name} = {value}"))
+        self.parameters.iter().fold(self.formula(), |text, (name, value)| format!("{text}; {name} = {value}"))
     }
 
     /// The law with its values.

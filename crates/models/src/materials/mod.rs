@@ -1,7 +1,8 @@
 //! Materials: hyperelastic laws, one file each, and their table.
 //!
-//! A new law is a file with an `impl Law` and an `ENTRY`, and its line in the list below. A law that is wanted in one
-//! scene needs no file: `hyperelastic` takes it as text.
+//! A new law is a file with an `ENTRY` and its line in the list below; its `impl Law` is derived from its text by `cargo xtask kernels`
+//! (`derived/`) or, where it has no formula in the entries of `F`, written by hand. A law that is wanted in one scene needs no file:
+//! `hyperelastic` takes it as text.
 
 // F, P, S, J as in the equations: the reader has the paper beside the code
 #![allow(non_snake_case)]

@@ -1,4 +1,4 @@
-//! Hooke's law of small strain, on `prism6`; derived by `cargo xtask kernels`, and not changed by hand.
+//! Hooke's law of small strain, on `prism6`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(eps)^2 + mu*dot(eps, eps)
@@ -82,7 +82,7 @@ fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
     let M1 = F.transpose(); // transpose(F)
-    let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
+    let M2 = (F + M1).scaled(D.d1);
     let s1 = F.trace(); // tr(F)
     let s2 = s1 - 3.0; // tr(F) - 3
     let s3 = s2 * D.d0;
@@ -105,35 +105,42 @@ fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 6]) -> [Vec3<R>; 7] {
-    let e1_0 = x[1] - x[0];
-    let e4_3 = x[4] - x[3];
-    let e2_0 = x[2] - x[0];
-    let e5_3 = x[5] - x[3];
-    let e3_0 = x[3] - x[0];
-    let e4_1 = x[4] - x[1];
-    let e5_2 = x[5] - x[2];
+    let e1m0 = x[1] - x[0];
+    let e4m3 = x[4] - x[3];
+    let e2m0 = x[2] - x[0];
+    let e5m3 = x[5] - x[3];
+    let e3m0 = x[3] - x[0];
+    let e4m1 = x[4] - x[1];
+    let e5m2 = x[5] - x[2];
     [
-        weighted([(e1_0, C[0]), (e4_3, C[2])]),
-        weighted([(e2_0, C[0]), (e5_3, C[2])]),
-        weighted([(e3_0, C[1]), (e4_1 + e5_2, C[3])]),
-        weighted([(e4_1, C[1]), (e3_0 + e5_2, C[3])]),
-        weighted([(e5_2, C[1]), (e3_0 + e4_1, C[3])]),
-        weighted([(e4_3, C[0]), (e1_0, C[2])]),
-        weighted([(e5_3, C[0]), (e2_0, C[2])]),
+        weighted([(e1m0, C[0]), (e4m3, C[2])]),
+        weighted([(e2m0, C[0]), (e5m3, C[2])]),
+        weighted([(e3m0, C[1]), (e4m1 + e5m2, C[3])]),
+        weighted([(e4m1, C[1]), (e3m0 + e5m2, C[3])]),
+        weighted([(e5m2, C[1]), (e3m0 + e4m1, C[3])]),
+        weighted([(e4m3, C[0]), (e1m0, C[2])]),
+        weighted([(e5m3, C[0]), (e2m0, C[2])]),
     ]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 7]) -> [Vec3<R>; 6] {
-    let t1_0 = weighted([(s[0], C[0]), (s[5], C[2])]);
-    let t4_3 = weighted([(s[5], C[0]), (s[0], C[2])]);
-    let t2_0 = weighted([(s[1], C[0]), (s[6], C[2])]);
-    let t5_3 = weighted([(s[6], C[0]), (s[1], C[2])]);
-    let t3_0 = weighted([(s[2], C[1]), (s[3] + s[4], C[3])]);
-    let t4_1 = weighted([(s[3], C[1]), (s[2] + s[4], C[3])]);
-    let t5_2 = weighted([(s[4], C[1]), (s[2] + s[3], C[3])]);
-    [t1_0 + t2_0 + t3_0, t4_1 - t1_0, t5_2 - t2_0, t4_3 + t5_3 - t3_0, -(t4_3 + t4_1), -(t5_3 + t5_2)]
+    let t1m0_xi = weighted([(s[0], C[0]), (s[5], C[2])]);
+    let t4m3_xi = weighted([(s[5], C[0]), (s[0], C[2])]);
+    let t2m0_eta = weighted([(s[1], C[0]), (s[6], C[2])]);
+    let t5m3_eta = weighted([(s[6], C[0]), (s[1], C[2])]);
+    let t3m0_zeta = weighted([(s[2], C[1]), (s[3] + s[4], C[3])]);
+    let t4m1_zeta = weighted([(s[3], C[1]), (s[2] + s[4], C[3])]);
+    let t5m2_zeta = weighted([(s[4], C[1]), (s[2] + s[3], C[3])]);
+    [
+        t1m0_xi + t2m0_eta + t3m0_zeta,
+        t4m1_zeta - t1m0_xi,
+        t5m2_zeta - t2m0_eta,
+        t4m3_xi + t5m3_eta - t3m0_zeta,
+        -(t4m3_xi + t4m1_zeta),
+        -(t5m3_eta + t5m2_zeta),
+    ]
 }
 
 impl DerivedElement<6> for LinearPrism6 {

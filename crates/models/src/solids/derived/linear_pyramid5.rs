@@ -1,4 +1,4 @@
-//! Hooke's law of small strain, on `pyramid5`; derived by `cargo xtask kernels`, and not changed by hand.
+//! Hooke's law of small strain, on `pyramid5`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(eps)^2 + mu*dot(eps, eps)
@@ -82,7 +82,7 @@ fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
     let M1 = F.transpose(); // transpose(F)
-    let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
+    let M2 = (F + M1).scaled(D.d1);
     let s1 = F.trace(); // tr(F)
     let s2 = s1 - 3.0; // tr(F) - 3
     let s3 = s2 * D.d0;
@@ -105,37 +105,37 @@ fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 5]) -> [Vec3<R>; 6] {
-    let e1_0 = x[1] - x[0];
-    let e2_3 = x[2] - x[3];
-    let e3_0 = x[3] - x[0];
-    let e2_1 = x[2] - x[1];
+    let e1m0 = x[1] - x[0];
+    let e2m3 = x[2] - x[3];
+    let e3m0 = x[3] - x[0];
+    let e2m1 = x[2] - x[1];
     let u0_2 = x[0] + x[2];
     let u1_3 = x[1] + x[3];
     [
-        weighted([(e1_0, C[1]), (e2_3, C[4])]),
-        weighted([(e3_0, C[1]), (e2_1, C[4])]),
+        weighted([(e1m0, C[1]), (e2m3, C[4])]),
+        weighted([(e3m0, C[1]), (e2m1, C[4])]),
         weighted([(x[4], C[0]), (-u1_3, C[2]), (-u0_2, C[3])]),
-        weighted([(e2_1, C[1]), (e3_0, C[4])]),
+        weighted([(e2m1, C[1]), (e3m0, C[4])]),
         weighted([(x[4], C[0]), (-u0_2, C[2]), (-u1_3, C[3])]),
-        weighted([(e2_3, C[1]), (e1_0, C[4])]),
+        weighted([(e2m3, C[1]), (e1m0, C[4])]),
     ]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 6]) -> [Vec3<R>; 5] {
-    let t1_0 = weighted([(s[0], C[1]), (s[5], C[4])]);
-    let t2_3 = weighted([(s[5], C[1]), (s[0], C[4])]);
-    let t3_0 = weighted([(s[1], C[1]), (s[3], C[4])]);
-    let t2_1 = weighted([(s[3], C[1]), (s[1], C[4])]);
+    let t1m0_xi = weighted([(s[0], C[1]), (s[5], C[4])]);
+    let t2m3_xi = weighted([(s[5], C[1]), (s[0], C[4])]);
+    let t3m0_eta = weighted([(s[1], C[1]), (s[3], C[4])]);
+    let t2m1_eta = weighted([(s[3], C[1]), (s[1], C[4])]);
     let t0_2_zeta = weighted([(-s[4], C[2]), (-s[2], C[3])]);
     let t1_3_zeta = weighted([(-s[2], C[2]), (-s[4], C[3])]);
     let t4_zeta = s[2] + s[4];
     [
-        t1_0 + t3_0 - t0_2_zeta,
-        t2_1 - t1_0 - t1_3_zeta,
-        -(t2_3 + t2_1 + t0_2_zeta),
-        t2_3 - t3_0 - t1_3_zeta,
+        t1m0_xi + t3m0_eta - t0_2_zeta,
+        t2m1_eta - t1m0_xi - t1_3_zeta,
+        -(t2m3_xi + t2m1_eta + t0_2_zeta),
+        t2m3_xi - t3m0_eta - t1_3_zeta,
         -t4_zeta,
     ]
 }

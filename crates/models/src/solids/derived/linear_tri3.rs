@@ -1,4 +1,4 @@
-//! Hooke's law of small strain, on `tri3`; derived by `cargo xtask kernels`, and not changed by hand.
+//! Hooke's law of small strain, on `tri3`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(eps)^2 + mu*dot(eps, eps)
@@ -79,7 +79,7 @@ fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
     let M1 = F.transpose(); // transpose(F)
-    let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
+    let M2 = (F + M1).scaled(D.d1);
     let s1 = F.trace(); // tr(F)
     let s2 = s1 - 3.0; // tr(F) - 3
     let s3 = s2 * D.d0;
@@ -102,9 +102,9 @@ fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 3]) -> [Vec3<R>; 2] {
-    let e1_0 = x[1] - x[0];
-    let e2_0 = x[2] - x[0];
-    [e1_0, e2_0]
+    let e1m0 = x[1] - x[0];
+    let e2m0 = x[2] - x[0];
+    [e1m0, e2m0]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].

@@ -162,7 +162,7 @@ impl LawVisitor for Names {
     }
 }
 
-/// Off-diagonal part of `∂X/∂ξ`, relative, below which a cell is a box along the axes.
+/// How far an edge may lean out of its axis, relative to its own length, in a cell that is a box along the axes.
 const BOX_TOLERANCE: f64 = 1e-12;
 
 /// Whether a cell is a box along the axes.
@@ -174,7 +174,13 @@ pub(super) fn map_of(mesh: &Mesh, cell: &Cell) -> MapKind {
     let is_diagonal = |xi: Vec3| {
         let jacobian = cell.kind.jacobian(&corners, xi);
         let off = jacobian - Mat3::from_diagonal(jacobian.diagonal());
-        off.largest_entry() < BOX_TOLERANCE * jacobian.largest_entry()
+        // the columns are the edges: a short one may not lean by what is little to a long one
+        let largest =
+            |edge: Vec3| edge.to_array().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        off.columns
+            .into_iter()
+            .zip(jacobian.columns)
+            .all(|(off, edge)| largest(off) < BOX_TOLERANCE * largest(edge))
     };
     if cell.kind.default_rule().points.iter().all(|point| is_diagonal(point.position)) {
         MapKind::Box

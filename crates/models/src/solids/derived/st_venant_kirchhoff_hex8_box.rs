@@ -1,4 +1,4 @@
-//! quadratic in Green strain, on `hex8`, a box along the axes; derived by `cargo xtask kernels`, and not changed by hand.
+//! quadratic in Green strain, on `hex8`, a box along the axes; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(E)^2 + mu*dot(E, E)
@@ -80,16 +80,14 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    F * M5
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    F * M3
 }
 
 /// `ω δP`.
@@ -98,82 +96,79 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     let F = *F;
     let dF = *dF;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    let M6 = dF.transpose_mul(&F); // transpose(dF)*F
-    let M7 = M6.transpose(); // transpose(F)*dF
-    let M8 = M6 + M7; // transpose(dF)*F + transpose(F)*dF
-    let M9 = M8.scaled(D.d1);
-    let s5 = M6.trace(); // dot(F, dF)
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    let M4 = dF.transpose_mul(&F); // transpose(dF)*F
+    let M5 = M4.transpose(); // transpose(F)*dF
+    let M6 = (M4 + M5).scaled(D.d1);
+    let s5 = M4.trace(); // dot(F, dF)
     let s6 = D.d0 * s5; // dot(F, dF)*D_0
-    let M10 = M9.plus_diagonal(s6);
-    let M11 = F * M10;
-    let M12 = dF * M5;
-    M11 + M12
+    let M7 = M6.plus_diagonal(s6);
+    let M8 = F * M7;
+    let M9 = dF * M3;
+    M8 + M9
 }
 
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 8]) -> [Vec3<R>; 12] {
-    let e1_0 = x[1] - x[0];
-    let e2_3 = x[2] - x[3];
-    let e5_4 = x[5] - x[4];
-    let e6_7 = x[6] - x[7];
-    let e3_0 = x[3] - x[0];
-    let e2_1 = x[2] - x[1];
-    let e7_4 = x[7] - x[4];
-    let e6_5 = x[6] - x[5];
-    let e4_0 = x[4] - x[0];
-    let e5_1 = x[5] - x[1];
-    let e6_2 = x[6] - x[2];
-    let e7_3 = x[7] - x[3];
+    let e1m0 = x[1] - x[0];
+    let e2m3 = x[2] - x[3];
+    let e5m4 = x[5] - x[4];
+    let e6m7 = x[6] - x[7];
+    let e3m0 = x[3] - x[0];
+    let e2m1 = x[2] - x[1];
+    let e7m4 = x[7] - x[4];
+    let e6m5 = x[6] - x[5];
+    let e4m0 = x[4] - x[0];
+    let e5m1 = x[5] - x[1];
+    let e6m2 = x[6] - x[2];
+    let e7m3 = x[7] - x[3];
     [
-        weighted([(e1_0, C[0]), (e2_3 + e5_4, C[1]), (e6_7, C[2])]),
-        weighted([(e3_0, C[0]), (e2_1 + e7_4, C[1]), (e6_5, C[2])]),
-        weighted([(e4_0, C[0]), (e5_1 + e7_3, C[1]), (e6_2, C[2])]),
-        weighted([(e2_1, C[0]), (e3_0 + e6_5, C[1]), (e7_4, C[2])]),
-        weighted([(e5_1, C[0]), (e4_0 + e6_2, C[1]), (e7_3, C[2])]),
-        weighted([(e2_3, C[0]), (e1_0 + e6_7, C[1]), (e5_4, C[2])]),
-        weighted([(e7_3, C[0]), (e4_0 + e6_2, C[1]), (e5_1, C[2])]),
-        weighted([(e6_2, C[0]), (e5_1 + e7_3, C[1]), (e4_0, C[2])]),
-        weighted([(e5_4, C[0]), (e1_0 + e6_7, C[1]), (e2_3, C[2])]),
-        weighted([(e7_4, C[0]), (e3_0 + e6_5, C[1]), (e2_1, C[2])]),
-        weighted([(e6_5, C[0]), (e2_1 + e7_4, C[1]), (e3_0, C[2])]),
-        weighted([(e6_7, C[0]), (e2_3 + e5_4, C[1]), (e1_0, C[2])]),
+        weighted([(e1m0, C[0]), (e2m3 + e5m4, C[1]), (e6m7, C[2])]),
+        weighted([(e3m0, C[0]), (e2m1 + e7m4, C[1]), (e6m5, C[2])]),
+        weighted([(e4m0, C[0]), (e5m1 + e7m3, C[1]), (e6m2, C[2])]),
+        weighted([(e2m1, C[0]), (e3m0 + e6m5, C[1]), (e7m4, C[2])]),
+        weighted([(e5m1, C[0]), (e4m0 + e6m2, C[1]), (e7m3, C[2])]),
+        weighted([(e2m3, C[0]), (e1m0 + e6m7, C[1]), (e5m4, C[2])]),
+        weighted([(e7m3, C[0]), (e4m0 + e6m2, C[1]), (e5m1, C[2])]),
+        weighted([(e6m2, C[0]), (e5m1 + e7m3, C[1]), (e4m0, C[2])]),
+        weighted([(e5m4, C[0]), (e1m0 + e6m7, C[1]), (e2m3, C[2])]),
+        weighted([(e7m4, C[0]), (e3m0 + e6m5, C[1]), (e2m1, C[2])]),
+        weighted([(e6m5, C[0]), (e2m1 + e7m4, C[1]), (e3m0, C[2])]),
+        weighted([(e6m7, C[0]), (e2m3 + e5m4, C[1]), (e1m0, C[2])]),
     ]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 12]) -> [Vec3<R>; 8] {
-    let t1_0 = weighted([(s[0], C[0]), (s[5] + s[8], C[1]), (s[11], C[2])]);
-    let t2_3 = weighted([(s[5], C[0]), (s[0] + s[11], C[1]), (s[8], C[2])]);
-    let t5_4 = weighted([(s[8], C[0]), (s[0] + s[11], C[1]), (s[5], C[2])]);
-    let t6_7 = weighted([(s[11], C[0]), (s[5] + s[8], C[1]), (s[0], C[2])]);
-    let t3_0 = weighted([(s[1], C[0]), (s[3] + s[9], C[1]), (s[10], C[2])]);
-    let t2_1 = weighted([(s[3], C[0]), (s[1] + s[10], C[1]), (s[9], C[2])]);
-    let t7_4 = weighted([(s[9], C[0]), (s[1] + s[10], C[1]), (s[3], C[2])]);
-    let t6_5 = weighted([(s[10], C[0]), (s[3] + s[9], C[1]), (s[1], C[2])]);
-    let t4_0 = weighted([(s[2], C[0]), (s[4] + s[6], C[1]), (s[7], C[2])]);
-    let t5_1 = weighted([(s[4], C[0]), (s[2] + s[7], C[1]), (s[6], C[2])]);
-    let t6_2 = weighted([(s[7], C[0]), (s[4] + s[6], C[1]), (s[2], C[2])]);
-    let t7_3 = weighted([(s[6], C[0]), (s[2] + s[7], C[1]), (s[4], C[2])]);
+    let t1m0_xi = weighted([(s[0], C[0]), (s[5] + s[8], C[1]), (s[11], C[2])]);
+    let t2m3_xi = weighted([(s[5], C[0]), (s[0] + s[11], C[1]), (s[8], C[2])]);
+    let t5m4_xi = weighted([(s[8], C[0]), (s[0] + s[11], C[1]), (s[5], C[2])]);
+    let t6m7_xi = weighted([(s[11], C[0]), (s[5] + s[8], C[1]), (s[0], C[2])]);
+    let t3m0_eta = weighted([(s[1], C[0]), (s[3] + s[9], C[1]), (s[10], C[2])]);
+    let t2m1_eta = weighted([(s[3], C[0]), (s[1] + s[10], C[1]), (s[9], C[2])]);
+    let t7m4_eta = weighted([(s[9], C[0]), (s[1] + s[10], C[1]), (s[3], C[2])]);
+    let t6m5_eta = weighted([(s[10], C[0]), (s[3] + s[9], C[1]), (s[1], C[2])]);
+    let t4m0_zeta = weighted([(s[2], C[0]), (s[4] + s[6], C[1]), (s[7], C[2])]);
+    let t5m1_zeta = weighted([(s[4], C[0]), (s[2] + s[7], C[1]), (s[6], C[2])]);
+    let t6m2_zeta = weighted([(s[7], C[0]), (s[4] + s[6], C[1]), (s[2], C[2])]);
+    let t7m3_zeta = weighted([(s[6], C[0]), (s[2] + s[7], C[1]), (s[4], C[2])]);
     [
-        t1_0 + t3_0 + t4_0,
-        t2_1 + t5_1 - t1_0,
-        t6_2 - t2_3 - t2_1,
-        t2_3 + t7_3 - t3_0,
-        t5_4 + t7_4 - t4_0,
-        t6_5 - t5_4 - t5_1,
-        -(t6_7 + t6_5 + t6_2),
-        t6_7 - t7_4 - t7_3,
+        t1m0_xi + t3m0_eta + t4m0_zeta,
+        t2m1_eta + t5m1_zeta - t1m0_xi,
+        t6m2_zeta - t2m3_xi - t2m1_eta,
+        t2m3_xi + t7m3_zeta - t3m0_eta,
+        t5m4_xi + t7m4_eta - t4m0_zeta,
+        t6m5_eta - t5m4_xi - t5m1_zeta,
+        -(t6m7_xi + t6m5_eta + t6m2_zeta),
+        t6m7_xi - t7m4_eta - t7m3_zeta,
     ]
 }
 

@@ -1,4 +1,4 @@
-//! quadratic in Green strain, on `prism6`; derived by `cargo xtask kernels`, and not changed by hand.
+//! quadratic in Green strain, on `prism6`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(E)^2 + mu*dot(E, E)
@@ -80,16 +80,14 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    F * M5
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    F * M3
 }
 
 /// `ω δP`.
@@ -98,59 +96,63 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     let F = *F;
     let dF = *dF;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    let M6 = dF.transpose_mul(&F); // transpose(dF)*F
-    let M7 = M6.transpose(); // transpose(F)*dF
-    let M8 = M6 + M7; // transpose(dF)*F + transpose(F)*dF
-    let M9 = M8.scaled(D.d1);
-    let s5 = M6.trace(); // dot(F, dF)
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    let M4 = dF.transpose_mul(&F); // transpose(dF)*F
+    let M5 = M4.transpose(); // transpose(F)*dF
+    let M6 = (M4 + M5).scaled(D.d1);
+    let s5 = M4.trace(); // dot(F, dF)
     let s6 = D.d0 * s5; // dot(F, dF)*D_0
-    let M10 = M9.plus_diagonal(s6);
-    let M11 = F * M10;
-    let M12 = dF * M5;
-    M11 + M12
+    let M7 = M6.plus_diagonal(s6);
+    let M8 = F * M7;
+    let M9 = dF * M3;
+    M8 + M9
 }
 
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 6]) -> [Vec3<R>; 7] {
-    let e1_0 = x[1] - x[0];
-    let e4_3 = x[4] - x[3];
-    let e2_0 = x[2] - x[0];
-    let e5_3 = x[5] - x[3];
-    let e3_0 = x[3] - x[0];
-    let e4_1 = x[4] - x[1];
-    let e5_2 = x[5] - x[2];
+    let e1m0 = x[1] - x[0];
+    let e4m3 = x[4] - x[3];
+    let e2m0 = x[2] - x[0];
+    let e5m3 = x[5] - x[3];
+    let e3m0 = x[3] - x[0];
+    let e4m1 = x[4] - x[1];
+    let e5m2 = x[5] - x[2];
     [
-        weighted([(e1_0, C[0]), (e4_3, C[2])]),
-        weighted([(e2_0, C[0]), (e5_3, C[2])]),
-        weighted([(e3_0, C[1]), (e4_1 + e5_2, C[3])]),
-        weighted([(e4_1, C[1]), (e3_0 + e5_2, C[3])]),
-        weighted([(e5_2, C[1]), (e3_0 + e4_1, C[3])]),
-        weighted([(e4_3, C[0]), (e1_0, C[2])]),
-        weighted([(e5_3, C[0]), (e2_0, C[2])]),
+        weighted([(e1m0, C[0]), (e4m3, C[2])]),
+        weighted([(e2m0, C[0]), (e5m3, C[2])]),
+        weighted([(e3m0, C[1]), (e4m1 + e5m2, C[3])]),
+        weighted([(e4m1, C[1]), (e3m0 + e5m2, C[3])]),
+        weighted([(e5m2, C[1]), (e3m0 + e4m1, C[3])]),
+        weighted([(e4m3, C[0]), (e1m0, C[2])]),
+        weighted([(e5m3, C[0]), (e2m0, C[2])]),
     ]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 7]) -> [Vec3<R>; 6] {
-    let t1_0 = weighted([(s[0], C[0]), (s[5], C[2])]);
-    let t4_3 = weighted([(s[5], C[0]), (s[0], C[2])]);
-    let t2_0 = weighted([(s[1], C[0]), (s[6], C[2])]);
-    let t5_3 = weighted([(s[6], C[0]), (s[1], C[2])]);
-    let t3_0 = weighted([(s[2], C[1]), (s[3] + s[4], C[3])]);
-    let t4_1 = weighted([(s[3], C[1]), (s[2] + s[4], C[3])]);
-    let t5_2 = weighted([(s[4], C[1]), (s[2] + s[3], C[3])]);
-    [t1_0 + t2_0 + t3_0, t4_1 - t1_0, t5_2 - t2_0, t4_3 + t5_3 - t3_0, -(t4_3 + t4_1), -(t5_3 + t5_2)]
+    let t1m0_xi = weighted([(s[0], C[0]), (s[5], C[2])]);
+    let t4m3_xi = weighted([(s[5], C[0]), (s[0], C[2])]);
+    let t2m0_eta = weighted([(s[1], C[0]), (s[6], C[2])]);
+    let t5m3_eta = weighted([(s[6], C[0]), (s[1], C[2])]);
+    let t3m0_zeta = weighted([(s[2], C[1]), (s[3] + s[4], C[3])]);
+    let t4m1_zeta = weighted([(s[3], C[1]), (s[2] + s[4], C[3])]);
+    let t5m2_zeta = weighted([(s[4], C[1]), (s[2] + s[3], C[3])]);
+    [
+        t1m0_xi + t2m0_eta + t3m0_zeta,
+        t4m1_zeta - t1m0_xi,
+        t5m2_zeta - t2m0_eta,
+        t4m3_xi + t5m3_eta - t3m0_zeta,
+        -(t4m3_xi + t4m1_zeta),
+        -(t5m3_eta + t5m2_zeta),
+    ]
 }
 
 impl DerivedElement<6> for StVenantKirchhoffPrism6 {

@@ -1,4 +1,4 @@
-//! quadratic in Green strain, on `pyramid5`; derived by `cargo xtask kernels`, and not changed by hand.
+//! quadratic in Green strain, on `pyramid5`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(E)^2 + mu*dot(E, E)
@@ -80,16 +80,14 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    F * M5
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    F * M3
 }
 
 /// `ω δP`.
@@ -98,61 +96,58 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     let F = *F;
     let dF = *dF;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    let M6 = dF.transpose_mul(&F); // transpose(dF)*F
-    let M7 = M6.transpose(); // transpose(F)*dF
-    let M8 = M6 + M7; // transpose(dF)*F + transpose(F)*dF
-    let M9 = M8.scaled(D.d1);
-    let s5 = M6.trace(); // dot(F, dF)
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    let M4 = dF.transpose_mul(&F); // transpose(dF)*F
+    let M5 = M4.transpose(); // transpose(F)*dF
+    let M6 = (M4 + M5).scaled(D.d1);
+    let s5 = M4.trace(); // dot(F, dF)
     let s6 = D.d0 * s5; // dot(F, dF)*D_0
-    let M10 = M9.plus_diagonal(s6);
-    let M11 = F * M10;
-    let M12 = dF * M5;
-    M11 + M12
+    let M7 = M6.plus_diagonal(s6);
+    let M8 = F * M7;
+    let M9 = dF * M3;
+    M8 + M9
 }
 
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 5]) -> [Vec3<R>; 6] {
-    let e1_0 = x[1] - x[0];
-    let e2_3 = x[2] - x[3];
-    let e3_0 = x[3] - x[0];
-    let e2_1 = x[2] - x[1];
+    let e1m0 = x[1] - x[0];
+    let e2m3 = x[2] - x[3];
+    let e3m0 = x[3] - x[0];
+    let e2m1 = x[2] - x[1];
     let u0_2 = x[0] + x[2];
     let u1_3 = x[1] + x[3];
     [
-        weighted([(e1_0, C[1]), (e2_3, C[4])]),
-        weighted([(e3_0, C[1]), (e2_1, C[4])]),
+        weighted([(e1m0, C[1]), (e2m3, C[4])]),
+        weighted([(e3m0, C[1]), (e2m1, C[4])]),
         weighted([(x[4], C[0]), (-u1_3, C[2]), (-u0_2, C[3])]),
-        weighted([(e2_1, C[1]), (e3_0, C[4])]),
+        weighted([(e2m1, C[1]), (e3m0, C[4])]),
         weighted([(x[4], C[0]), (-u0_2, C[2]), (-u1_3, C[3])]),
-        weighted([(e2_3, C[1]), (e1_0, C[4])]),
+        weighted([(e2m3, C[1]), (e1m0, C[4])]),
     ]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 6]) -> [Vec3<R>; 5] {
-    let t1_0 = weighted([(s[0], C[1]), (s[5], C[4])]);
-    let t2_3 = weighted([(s[5], C[1]), (s[0], C[4])]);
-    let t3_0 = weighted([(s[1], C[1]), (s[3], C[4])]);
-    let t2_1 = weighted([(s[3], C[1]), (s[1], C[4])]);
+    let t1m0_xi = weighted([(s[0], C[1]), (s[5], C[4])]);
+    let t2m3_xi = weighted([(s[5], C[1]), (s[0], C[4])]);
+    let t3m0_eta = weighted([(s[1], C[1]), (s[3], C[4])]);
+    let t2m1_eta = weighted([(s[3], C[1]), (s[1], C[4])]);
     let t0_2_zeta = weighted([(-s[4], C[2]), (-s[2], C[3])]);
     let t1_3_zeta = weighted([(-s[2], C[2]), (-s[4], C[3])]);
     let t4_zeta = s[2] + s[4];
     [
-        t1_0 + t3_0 - t0_2_zeta,
-        t2_1 - t1_0 - t1_3_zeta,
-        -(t2_3 + t2_1 + t0_2_zeta),
-        t2_3 - t3_0 - t1_3_zeta,
+        t1m0_xi + t3m0_eta - t0_2_zeta,
+        t2m1_eta - t1m0_xi - t1_3_zeta,
+        -(t2m3_xi + t2m1_eta + t0_2_zeta),
+        t2m3_xi - t3m0_eta - t1_3_zeta,
         -t4_zeta,
     ]
 }

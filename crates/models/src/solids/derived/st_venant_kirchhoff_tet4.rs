@@ -1,4 +1,4 @@
-//! quadratic in Green strain, on `tet4`; derived by `cargo xtask kernels`, and not changed by hand.
+//! quadratic in Green strain, on `tet4`; derived from its text by `souple derive --emit kernel`, and not changed by hand.
 //!
 //! ```text
 //! Ψ = lambda/2*tr(E)^2 + mu*dot(E, E)
@@ -77,16 +77,14 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    F * M5
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    F * M3
 }
 
 /// `ω δP`.
@@ -95,34 +93,31 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     let F = *F;
     let dF = *dF;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
-    let M2 = M1 * 0.5;
-    let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
-    let M4 = M3.scaled(s1);
-    let s2 = M1.trace(); // dot(F, F)
-    let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
-    let M5 = M4.plus_diagonal(s4);
-    let M6 = dF.transpose_mul(&F); // transpose(dF)*F
-    let M7 = M6.transpose(); // transpose(F)*dF
-    let M8 = M6 + M7; // transpose(dF)*F + transpose(F)*dF
-    let M9 = M8.scaled(D.d1);
-    let s5 = M6.trace(); // dot(F, dF)
+    let M2 = M1.scaled(D.d1);
+    let s1 = M1.trace(); // dot(F, F)
+    let s2 = s1.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-1.0), s3); // (0.5*dot(F, F) - 1.5)*D_0 - D_1
+    let M3 = M2.plus_diagonal(s4);
+    let M4 = dF.transpose_mul(&F); // transpose(dF)*F
+    let M5 = M4.transpose(); // transpose(F)*dF
+    let M6 = (M4 + M5).scaled(D.d1);
+    let s5 = M4.trace(); // dot(F, dF)
     let s6 = D.d0 * s5; // dot(F, dF)*D_0
-    let M10 = M9.plus_diagonal(s6);
-    let M11 = F * M10;
-    let M12 = dF * M5;
-    M11 + M12
+    let M7 = M6.plus_diagonal(s6);
+    let M8 = F * M7;
+    let M9 = dF * M3;
+    M8 + M9
 }
 
 /// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
 #[inline(always)]
 fn columns<R: Real>(x: &[Vec3<R>; 4]) -> [Vec3<R>; 3] {
-    let e1_0 = x[1] - x[0];
-    let e2_0 = x[2] - x[0];
-    let e3_0 = x[3] - x[0];
-    [e1_0, e2_0, e3_0]
+    let e1m0 = x[1] - x[0];
+    let e2m0 = x[2] - x[0];
+    let e3m0 = x[3] - x[0];
+    [e1m0, e2m0, e3m0]
 }
 
 /// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
