@@ -49,7 +49,7 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
 }
 
 /// Benches whose baselines are promises about laws and elements, and about what is shown 25 times a second.
-const SPEED: [&str; 11] = [
+const SPEED: [&str; 14] = [
     "law_text_tensor",
     "law_text_scalar",
     "law_ready",
@@ -59,6 +59,9 @@ const SPEED: [&str; 11] = [
     "pyramid5_forces",
     "tangents",
     "formal",
+    "accuracy",
+    "explicit_or_implicit",
+    "adaptive",
     "contours_500",
     "view_network",
 ];

@@ -11,6 +11,7 @@ use souple_table::{Entry, Table, Value, Values, counted};
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table as Document};
 use crate::keys::{EntryShape, Key, Keys, Need, Others, Shape, did_you_mean};
+use crate::layout::Layout;
 use crate::values::{Reading, quoted};
 
 /// A table being read.
@@ -29,13 +30,21 @@ pub struct Chosen<B: 'static> {
     pub site: Site,
     /// Where the parameters that are written are.
     pub written: Vec<(&'static str, Site)>,
+    /// Where the bytes of texts are, by the keys that lead to them: `push`, `parameters.k`.
+    pub texts: Vec<(String, Site, Layout)>,
 }
 
 // by hand: entries are shared, whatever they build
 impl<B> Clone for Chosen<B> {
     fn clone(&self) -> Self {
-        let Self { entry, values, site, written } = self;
-        Self { entry, values: values.clone(), site: site.clone(), written: written.clone() }
+        let Self { entry, values, site, written, texts } = self;
+        Self {
+            entry,
+            values: values.clone(),
+            site: site.clone(),
+            written: written.clone(),
+            texts: texts.clone(),
+        }
     }
 }
 
@@ -43,6 +52,33 @@ impl<B> Chosen<B> {
     /// Where a parameter is written, or the whole where it is not.
     pub fn site_of(&self, parameter: &str) -> &Site {
         self.written.iter().find(|(name, _)| *name == parameter).map_or(&self.site, |(_, site)| site)
+    }
+
+    /// Where a part of a text is; the whole text, or else what is chosen, where that is not known.
+    pub fn site_of_part(&self, keys: &str, part: Option<Span>) -> Site {
+        let Some((_, site, layout)) = self.texts.iter().find(|(known, ..)| known == keys) else {
+            return self.site_of(keys).clone();
+        };
+        let place = part.and_then(|part| layout.place_of(part));
+        Site { place: place.unwrap_or(site.place), ..site.clone() }
+    }
+}
+
+/// Texts below a node, with the keys that lead to them.
+fn texts_of(keys: &str, path: &str, node: &Node, texts: &mut Vec<(String, Site, Layout)>) {
+    match &node.content {
+        Content::Text(_) => {
+            let site = Site { place: node.place, path: path.to_owned() };
+            texts.push((keys.to_owned(), site, node.layout.clone()));
+        }
+        Content::Table(table) => {
+            for crate::document::Entry { key, node, .. } in &table.entries {
+                let is_bare = key.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"_-".contains(&byte));
+                let key = if is_bare { key.clone() } else { format!("\"{key}\"") };
+                texts_of(&format!("{keys}.{key}"), &format!("{path}.{key}"), node, texts);
+            }
+        }
+        _ => {}
     }
 }
 
@@ -387,7 +423,7 @@ pub fn choose<B>(
             return name.refuse(Code::UnknownName, message, format!("one of {}", unknown.known.join(", ")));
         }
     };
-    let (mut values, mut written) = (Values::new(), Vec::new());
+    let (mut values, mut written, mut texts) = (Values::new(), Vec::new(), Vec::new());
     let mut is_good = true;
     let known = || entry.parameters.iter().map(|parameter| parameter.name);
     let inside = own.iter().flat_map(|content| &content.entries).filter(|e| e.key != shape.tag);
@@ -412,6 +448,7 @@ pub fn choose<B>(
         let value = Reading { node: &item.node, path, log };
         is_good &= value.parameter(parameter, &mut values).is_some();
         written.push((parameter.name, value.site()));
+        texts_of(parameter.name, &value.path, value.node, &mut texts);
     }
     for parameter in entry.parameters {
         let is_written = own.is_some_and(|content| content.get(parameter.name).is_some())
@@ -429,7 +466,7 @@ pub fn choose<B>(
         return None;
     }
     match entry.values(values) {
-        Ok(values) => Some(Chosen { entry, values, site: reading.site(), written }),
+        Ok(values) => Some(Chosen { entry, values, site: reading.site(), written, texts }),
         Err(error) => reading.refuse(Code::OutOfRange, error.to_string(), expected),
     }
 }

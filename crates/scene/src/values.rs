@@ -38,7 +38,7 @@ impl<'a> Reading<'a> {
     /// What is wrong with a part of the text.
     fn refuse_part<T>(&self, error: &ParseError, expected: &str) -> Option<T> {
         let place = self.node.layout.place_of(error.span()).unwrap_or(self.node.place);
-        self.refuse_at(place, Code::BadFormula, error.to_string(), expected)
+        self.refuse_at(place, Code::BadFormula, error.without_place(), expected)
     }
 
     fn refuse_at<T>(

@@ -300,6 +300,40 @@ fn faults_in_texts_point_at_their_characters() {
         let from: String = line.chars().skip(error.column - 1).collect();
         assert!(from.starts_with(read) && error.value == read, "`{read}`: {errors}");
     }
+    // laws of links, their parameters and transitions, and heights are built from their texts later
+    let link = |law: &str| {
+        format!(
+            "format = 1\n[world]\nperiod = 0.01\n[systems.main]\nstepper = \"t_simulation\"\n\
+             [networks.n.masses.bob]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 1\n\
+             [[networks.n.links]]\nlaw = {law}\nof = [\"bob\", \"bob\"]\nall = true\nrest_length = 1\n"
+        )
+    };
+    let height = |formula: &str| {
+        format!("{BAR}[shapes.ground]\nshape = {{ name = \"height\", height = {formula} }}\n")
+    };
+    for (text, read) in [
+        (link("{ name = \"formula\", push = \"3*(D - L0) + kk*V\" }"), "kk"),
+        (link("{ name = \"formula\", push = \"-k*D\", parameters = { k = \"2 + qq\" } }"), "qq"),
+        (link("{ name = \"rheological\", network = \"spring(3) - spong(2)\" }"), "spong"),
+        (height("\"0.1*sim(x)\""), "sim"),
+        (
+            BAR.replace(
+                "[[bodies.bar.pins]]",
+                "[bodies.bar.material_fields.density]\nvalue = \"1e3*(1 + zz)\"\n[[bodies.bar.pins]]",
+            ),
+            "zz",
+        ),
+    ] {
+        let errors =
+            read_text("scene.toml", &text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("{read}"));
+        let told = errors.0.iter().any(|error| error.value == read && !error.message.contains("byte"));
+        assert!(told, "`{read}`: {errors}");
+    }
+    // every fault of a law at once
+    let both = law("\"mu*dot(E, E)\"").replace("{ mu = \"1 MPa\" }", "{ mu = \"1 MPq\", k = \"3 kPz\" }");
+    let errors = read_text("scene.toml", &both, Path::new("."), &[]).err().expect("no such units");
+    let values: Vec<&str> = errors.0.iter().map(|error| error.value.as_str()).collect();
+    assert_eq!(values, ["MPq", "kPz"], "{errors}");
     let set = ["bodies.bar.loads=[{ region = \"x_max\", force = [\"3*q\", 0, 0] }]".to_owned()];
     let errors = read_text("scene.toml", BAR, Path::new("."), &set).err().expect("no `q`");
     assert_eq!(errors.0[0].value, "q", "{errors}");

@@ -14,6 +14,7 @@ use std::fmt::Debug;
 
 use souple_engine::Configuration;
 use souple_engine::obstacle::Side;
+use souple_formal::ParseError;
 use souple_math::{Mat3, Vec3};
 use souple_mesh::{MeshError, TriangleSurface};
 use souple_table::{Entry, Parameter, Table, Value, Values};
@@ -91,6 +92,8 @@ impl Outline {
 pub enum ShapeError {
     #[error("`{field}` is {value}, but must be {expected}")]
     Unfit { field: &'static str, value: String, expected: &'static str },
+    #[error("`{field}`: {}; a formula of {variables} is accepted", error.without_place())]
+    Formula { field: &'static str, variables: &'static str, error: Box<ParseError> },
     #[error("`{field}` = \"{surface}\" cannot be a shape: {error}")]
     Surface { field: &'static str, surface: String, error: Box<MeshError> },
     #[error("`{field}` = \"{surface}\" cannot be read: {message}")]

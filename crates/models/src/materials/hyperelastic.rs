@@ -58,12 +58,14 @@ pub struct MaterialError {
     path: Vec<String>,
     span: Option<Span>,
     message: String,
+    /// What is wrong elsewhere in the same law.
+    others: Vec<Self>,
 }
 
 impl MaterialError {
     /// Of one parameter.
     pub(super) fn of(parameter: &str, message: String) -> Self {
-        Self { path: vec![parameter.to_owned()], span: None, message }
+        Self { path: vec![parameter.to_owned()], span: None, message, others: Vec::new() }
     }
 
     /// Keys that lead from the material to what is wrong: `["parameters", "mu"]`.
@@ -74,6 +76,11 @@ impl MaterialError {
     /// The place in the text there.
     pub fn span(&self) -> Option<Span> {
         self.span
+    }
+
+    /// This and all else that is wrong in the same law.
+    pub fn all(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
     }
 }
 
@@ -116,25 +123,38 @@ pub fn law_text(
     parameters: &[(String, String)],
     definitions: &[(String, String)],
 ) -> Result<LawText, MaterialError> {
-    let mut read = Vec::with_capacity(parameters.len());
+    let (mut read, mut faults) = (Vec::with_capacity(parameters.len()), Vec::new());
     for (name, text) in parameters {
-        let fail = |(error, span): (String, Option<Span>)| MaterialError {
-            path: vec!["parameters".to_owned(), name.clone()],
-            span,
-            message: format!("`{name}`: {error}"),
-        };
-        let parameter = if is_list(text) {
-            LawParameter::Direction(direction(text).map_err(fail)?)
-        } else {
-            let quantity =
-                parse_quantity(text).map_err(|error| fail((error.to_string(), Some(error.span()))))?;
-            // a bare number is taken in the unit that is wanted
-            let bare = text.trim().parse::<f64>().is_ok();
-            LawParameter::Number { value: quantity.value, dimension: (!bare).then_some(quantity.dimension) }
-        };
-        read.push((name.clone(), parameter));
+        match parameter_of(text) {
+            Ok(parameter) => read.push((name.clone(), parameter)),
+            Err((error, span)) => faults.push(MaterialError {
+                path: vec!["parameters".to_owned(), name.clone()],
+                span,
+                message: format!("`{name}`: {error}"),
+                others: Vec::new(),
+            }),
+        }
     }
-    Ok(LawText { energy: energy.to_owned(), definitions: definitions.to_vec(), parameters: read })
+    if faults.is_empty() {
+        return Ok(LawText {
+            energy: energy.to_owned(),
+            definitions: definitions.to_vec(),
+            parameters: read,
+        });
+    }
+    let first = faults.remove(0);
+    Err(MaterialError { others: faults, ..first })
+}
+
+/// A value as written; or what is wrong, and where.
+fn parameter_of(text: &str) -> Result<LawParameter, (String, Option<Span>)> {
+    if is_list(text) {
+        return direction(text).map(LawParameter::Direction);
+    }
+    let quantity = parse_quantity(text).map_err(|error| (error.to_string(), Some(error.span())))?;
+    // a bare number is taken in the unit that is wanted
+    let bare = text.trim().parse::<f64>().is_ok();
+    Ok(LawParameter::Number { value: quantity.value, dimension: (!bare).then_some(quantity.dimension) })
 }
 
 /// Whether a text is the value of a parameter: a number, a quantity or a direction, and else a part of an energy.
@@ -411,5 +431,5 @@ fn told(text: &LawText, error: &LawError) -> MaterialError {
     } else {
         vec!["energy".to_owned()]
     };
-    MaterialError { path, span: error.span, message: error.to_string() }
+    MaterialError { path, span: error.span, message: error.to_string(), others: Vec::new() }
 }

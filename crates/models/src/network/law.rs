@@ -6,7 +6,7 @@
 use std::fmt::Debug;
 
 use souple_engine::LinkState;
-use souple_formal::ParseError;
+use souple_formal::{ParseError, Span};
 use souple_math::{Real, Vec3};
 use souple_table::{Entry, Values};
 
@@ -131,8 +131,23 @@ pub type LinkEntry = Entry<BuildLink>;
 pub enum LinkError {
     #[error("`{parameter}` is {value}, but {expected}")]
     Unfit { parameter: &'static str, value: String, expected: String },
-    #[error("`{place}`: {error}")]
+    #[error("`{place}`: {}", error.without_place())]
     Formula { place: String, error: ParseError },
     #[error("`{place}` {what}")]
     Text { place: String, what: String },
+    /// Of a part of a text.
+    #[error("`{place}` {what}")]
+    Part { place: String, what: String, part: Option<Span> },
+}
+
+impl LinkError {
+    /// The keys that lead to what is wrong, and where that is in the text there.
+    pub fn place(&self) -> (&str, Option<Span>) {
+        match self {
+            Self::Unfit { parameter, .. } => (parameter, None),
+            Self::Formula { place, error } => (place, Some(error.span())),
+            Self::Text { place, .. } => (place, None),
+            Self::Part { place, part, .. } => (place, *part),
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use souple_engine::Force;
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
-use souple_models::contact::shape::BuildShape;
+use souple_models::contact::shape::{BuildShape, ShapeError};
 use souple_models::contact::{
     ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, ToolContact, ToolSurface,
     penalty_stiffness,
@@ -180,7 +180,11 @@ pub(super) fn built(draft: &Draft, chosen: &Chosen<BuildShape>) -> Option<Box<dy
     match (chosen.entry.build)(&chosen.values, &|file| read_surface(&open(file)?)) {
         Ok(built) => Some(built),
         Err(error) => {
-            draft.log.add(Code::Mesh, &chosen.site, error.to_string(), "a shape that can be");
+            let site = match &error {
+                ShapeError::Formula { field, error, .. } => chosen.site_of_part(field, Some(error.span())),
+                _ => chosen.site.clone(),
+            };
+            draft.log.add(Code::Mesh, &site, error.to_string(), "a shape that can be");
             None
         }
     }

@@ -52,6 +52,9 @@ pub fn warn(draft: &mut Draft) {
         for (chosen, material) in materials(body.spec) {
             let doubts = of_material(&material, locking_of(body, is_linear));
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(&chosen.site))));
+            // at its text, where it is one
+            let place = draft.place(&chosen.site_of_part("energy", None));
+            warnings.extend(material.warnings().iter().map(|doubt| format!("{place}: the law: {doubt}")));
         }
     }
     warnings.extend(of_surfaces(draft));
@@ -171,8 +174,7 @@ fn of_material(material: &Material, locking: Option<&'static str>) -> impl Itera
             ratio + 2.0 / 3.0
         )
     });
-    let of_law = material.warnings().iter().map(|doubt| format!("the law: {doubt}"));
-    [modulus_doubt, density_doubt, locking].into_iter().flatten().chain(of_law)
+    [modulus_doubt, density_doubt, locking].into_iter().flatten()
 }
 
 /// What is asked of a solver that another one will have to do.

@@ -78,8 +78,8 @@ impl Draft<'_> {
     /// A key and where it is written, for messages about two places.
     pub fn place(&self, site: &Site) -> String {
         let file = &self.sources.get(site.place.source).name;
-        let (line, _) = self.sources.line_column(site.place);
-        format!("`{}` ({file}:{line})", site.path)
+        let (line, column) = self.sources.line_column(site.place);
+        format!("`{}` ({file}:{line}:{column})", site.path)
     }
 
     /// What selects the points and cells of a body.

@@ -242,7 +242,9 @@ fn law(chosen: Option<&Chosen<BuildLink>>, timestep: f64, draft: &Draft) -> Opti
         Ok(law) => Some(law),
         Err(error) => {
             let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
-            draft.log.add(Code::OutOfRange, &chosen.site, error.to_string(), expected);
+            let (keys, part) = error.place();
+            let site = chosen.site_of_part(keys, part);
+            draft.log.add(Code::OutOfRange, &site, error.to_string(), expected);
             None
         }
     }

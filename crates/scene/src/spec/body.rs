@@ -453,21 +453,24 @@ fn law_as_text(name: &str) -> Option<String> {
 pub(super) fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
     let chosen = reader.entry("material", &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
-    let (mut site, mut node) = (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));
-    for key in error.path() {
-        site.path = format!("{}.{key}", site.path);
-        node = node.and_then(|node| node.as_table()?.get(key));
-        if let Some(node) = node {
-            site.place = node.place;
+    for error in error.all() {
+        let (mut site, mut node) =
+            (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));
+        for key in error.path() {
+            site.path = format!("{}.{key}", site.path);
+            node = node.and_then(|node| node.as_table()?.get(key));
+            if let Some(node) = node {
+                site.place = node.place;
+            }
         }
+        let of_part = node.zip(error.span()).and_then(|(node, span)| node.layout.place_of(span));
+        site.place = of_part.unwrap_or(site.place);
+        reader.log().add(
+            Code::BadFormula,
+            &site,
+            error.to_string(),
+            format!("a law that holds, see `souple describe {}`", chosen.entry.name),
+        );
     }
-    let of_part = node.zip(error.span()).and_then(|(node, span)| node.layout.place_of(span));
-    site.place = of_part.unwrap_or(site.place);
-    reader.log().add(
-        Code::BadFormula,
-        &site,
-        error.to_string(),
-        format!("a law that holds, see `souple describe {}`", chosen.entry.name),
-    );
     None
 }

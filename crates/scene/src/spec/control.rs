@@ -103,7 +103,7 @@ impl ControlSpec {
             reader.log().add(
                 Code::BadFormula,
                 &reader.site_of_part(key, error.span()),
-                error.to_string(),
+                error.without_place(),
                 expected,
             );
         };

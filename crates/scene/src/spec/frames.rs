@@ -101,7 +101,13 @@ impl FramesSpec {
                 let wanted =
                     Values::new().with("count", Value::Integer(count)).with("kept", Value::Numbers(&kept));
                 if let Ok(values) = entry.values(wanted) {
-                    *placement = Chosen { entry, values, site: placement.site.clone(), written: Vec::new() };
+                    *placement = Chosen {
+                        entry,
+                        values,
+                        site: placement.site.clone(),
+                        written: Vec::new(),
+                        texts: Vec::new(),
+                    };
                 }
             }
         }

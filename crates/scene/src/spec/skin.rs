@@ -211,7 +211,7 @@ impl PartSpec {
     fn written<B>(table: &'static Table<B>, name: &str, values: Values, site: &Site) -> Option<Chosen<B>> {
         let entry: &'static Entry<B> = table.find(name).ok()?;
         let values = entry.values(values).ok()?;
-        Some(Chosen { entry, values, site: site.clone(), written: Vec::new() })
+        Some(Chosen { entry, values, site: site.clone(), written: Vec::new(), texts: Vec::new() })
     }
 }
 

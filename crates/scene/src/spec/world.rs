@@ -202,7 +202,8 @@ impl SystemSpec {
     pub(crate) fn default_system(site: Site) -> Self {
         let entry = steppers::TABLE.find(DEFAULT_STEPPER).expect("the default stepper is in its table");
         let values = entry.values(souple_table::Values::new()).expect("the default stepper needs no values");
-        let stepper = Some(Chosen { entry, values, site: site.clone(), written: Vec::new() });
+        let stepper =
+            Some(Chosen { entry, values, site: site.clone(), written: Vec::new(), texts: Vec::new() });
         Self { name: DEFAULT_SYSTEM.to_owned(), stepper, steps_per_period: 1, site }
     }
 }

@@ -51,5 +51,13 @@ pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
     }
     let missed: Vec<&Figure> = figures.iter().filter(|figure| arguments.hold && figure.misses()).collect();
     missed.iter().for_each(|figure| print_note(format_args!("worse than its baseline: {figure}")));
+    let free: Vec<&str> = figures
+        .iter()
+        .filter(|figure| arguments.hold && figure.baseline.is_none())
+        .map(|figure| figure.name.as_str())
+        .collect();
+    if !free.is_empty() {
+        print_note(format_args!("not held, for want of a baseline: {}", free.join(", ")));
+    }
     if missed.is_empty() { Ok(End::Done) } else { Ok(End::Failed) }
 }

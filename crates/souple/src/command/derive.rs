@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde_json::json;
+use souple_formal::Span;
 use souple_formal::element::Cut;
 use souple_formal::emit::{ElementCode, Latex, Style, Text, maxima, symbol, write};
 use souple_formal::graph::{Expr, Shape};
@@ -15,7 +16,7 @@ use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
 use souple_models::derive::{MapKind, element_data, source_law_name};
-use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
+use souple_models::materials::{MaterialError, WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
 use report::Report;
@@ -337,8 +338,21 @@ fn law_of(wanted: &str, arguments: &Arguments) -> Result<(String, LawText), Refu
         if is_parameter(&named.1) { parameters.push(named) } else { definitions.push(named) }
     }
     let text = law_text(energy, &parameters, &definitions).map_err(|error| {
+        let told = error.all().map(|error| fault_of_parameter(error, &parameters));
+        let told: Vec<String> = told.collect();
         let expected = "a quantity such as \"10 kPa\", or a direction such as \"[1, 0, 0]\"";
-        Refusal::request("parameter", "", expected, error.to_string())
+        Refusal::request("parameter", "", expected, told.join("\n"))
     })?;
     Ok((TEXT.to_owned(), text))
+}
+
+/// What is wrong with a parameter, with its text and carets under the place.
+fn fault_of_parameter(error: &MaterialError, parameters: &[(String, String)]) -> String {
+    let text = error.path().last().and_then(|name| parameters.iter().find(|(known, _)| known == name));
+    let Some(((name, text), span)) = text.zip(error.span()) else { return error.to_string() };
+    let written = format!("{name} = {text}");
+    let before = written.len() - text.len();
+    let place = Span::new(span.start + before, span.end + before).underline(&written);
+    let lines: Vec<String> = place.lines().map(|line| format!("    {line}")).collect();
+    format!("{error}\n{}", lines.join("\n"))
 }

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 use souple_formal::emit::{Text, write};
-use souple_formal::law::EnergyLaw;
+use souple_formal::graph::{Expr, Graph};
+use souple_formal::law::{Block, EnergyLaw};
 
 /// One expression of a law.
 pub struct Step {
@@ -22,11 +23,20 @@ impl Step {
             ("stress, dPsi/dF", "P", law.stress),
             ("its differential along dF", "dP", law.differential),
         ]
-        .map(|(what, symbol, expr)| {
-            let (parts, mut roots) = write(&law.graph, &[expr], &Text);
-            let operations = law.graph.operations(&[expr], |_| false).total();
-            Self { what, symbol, parts, result: roots.remove(0), operations }
-        })
+        .map(|(what, symbol, expr)| Self::of(&law.graph, what, symbol, expr))
+    }
+
+    /// The stiffness between two nodes, of laws of tensors.
+    pub fn block(law: &EnergyLaw) -> Option<Self> {
+        let Block { graph, stiffness, .. } = law.block()?;
+        let what = "stiffness between nodes whose shape functions have the gradients g_a and g_b, K u = (dP/dF : u g_b') g_a";
+        Some(Self::of(&graph, what, "K", stiffness))
+    }
+
+    fn of(graph: &Graph, what: &'static str, symbol: &'static str, expr: Expr) -> Self {
+        let (parts, mut roots) = write(graph, &[expr], &Text);
+        let operations = graph.operations(&[expr], |_| false).total();
+        Self { what, symbol, parts, result: roots.remove(0), operations }
     }
 
     pub fn to_text(&self) -> String {

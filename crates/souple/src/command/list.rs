@@ -193,10 +193,8 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     if arguments.json {
         let described = found.iter().map(|page| {
             let mut document = to_json(page);
-            if let Some([energy, stress, differential]) = steps_of(page) {
-                document["energy"] = energy.to_json();
-                document["stress"] = stress.to_json();
-                document["differential"] = differential.to_json();
+            for (key, step) in ["energy", "stress", "differential", "block"].into_iter().zip(steps_of(page)) {
+                document[key] = step.to_json();
             }
             if let Some(moduli) = moduli_of(page) {
                 document["small_strain"] = json!({
@@ -233,7 +231,7 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         if let Some(rules) = rules_of(page) {
             print_line(format_args!("  rules of quadrature: {rules}"));
         }
-        for step in steps_of(page).into_iter().flatten() {
+        for step in steps_of(page) {
             print_line(format_args!("{}", step.to_text().trim_end()));
         }
         for parameter in page.parameters {
@@ -263,13 +261,11 @@ fn rules_of(page: &Page) -> Option<String> {
 }
 
 /// What is derived from a law as text.
-fn steps_of(page: &Page) -> Option<[Step; 3]> {
-    if page.kind != "law" {
-        return None;
-    }
+fn steps_of(page: &Page) -> Vec<Step> {
+    let written = WrittenLaw::find(&page.name).filter(|_| page.kind == "law");
     // each law of the table is one, as its tests see to
-    let text = WrittenLaw::find(&page.name)?.text().ok()?;
-    Some(Step::all(&EnergyLaw::compile(&text).ok()?))
+    let law = written.and_then(|written| EnergyLaw::compile(&written.text().ok()?).ok());
+    law.iter().flat_map(|law| Step::all(law).into_iter().chain(Step::block(law))).collect()
 }
 
 /// What a law as text is at small strain, with its parameters as printed.
@@ -302,7 +298,10 @@ fn to_json(page: &Page) -> Value {
         "source": page.source,
         "parameters": parameters,
     });
-    if let Some(text) = &page.text {
+    // the materials that are compiled ahead are written too; their numbers are called as everyone calls them
+    let of_material =
+        || WrittenLaw::find(&page.name).filter(|_| page.kind == "material").map(WrittenLaw::formula);
+    if let Some(text) = page.text.clone().or_else(of_material) {
         document["text"] = json!(text);
     }
     if let Some(entry) = souple_models::network::LINKS.find(&page.name).ok().filter(|_| page.kind == "link") {

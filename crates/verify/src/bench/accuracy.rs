@@ -1,6 +1,6 @@
 //! EXP-28: the same accuracy by hexahedra and by tetrahedra, and what it costs.
 
-use super::timing::{Held, Timing, as_it_is, scene, with_threads};
+use super::timing::{Held, Timing, as_it_is, median, scene, with_threads};
 use super::{Effort, Figure, value_of};
 
 /// Tip of the beam of EXP-27 in the limit of fine meshes [m].
@@ -17,10 +17,15 @@ const MESHES: &[(&str, [u32; 2])] = &[
     ("tet4", [96, 12]),
 ];
 
+/// Up to which error of the tip hexahedra must be the cheaper way to it (EXP-28).
+const LARGEST_ERROR: f64 = 0.05;
+
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
+    // error and seconds of the processor of every mesh, hexahedra first
+    let mut curves: [Vec<(f64, f64)>; 2] = [Vec::new(), Vec::new()];
     let count = |element: &str| effort.choose(2, MESHES.iter().filter(|(kind, _)| *kind == element).count());
-    for element in ["hex8", "tet4"] {
+    for (element, curve) in ["hex8", "tet4"].into_iter().zip(&mut curves) {
         let meshes = MESHES.iter().filter(|(kind, _)| *kind == element).take(count(element));
         for (_, [along, across]) in meshes {
             let settings = [
@@ -43,12 +48,37 @@ pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
             };
             let mut timed = with_threads(1, || timing.sample(1))??;
             for _ in 1..effort.choose(1, 3) {
-                timed.seconds.extend(with_threads(1, || timing.sample(1))??.seconds);
+                let again = with_threads(1, || timing.sample(1))??;
+                timed.seconds.extend(again.seconds);
+                timed.processor.extend(again.processor);
             }
+            let spent = if timed.processor.is_empty() { &timed.seconds } else { &timed.processor };
+            curve.push((held.error, median(spent.clone()).0));
             let seconds = timed.seconds.clone();
             let name = format!("{name}_{element}_{along}x{across}x{across}");
             figures.push(timed.figure(&name, seconds, &held, ("s", false)));
         }
+    }
+    let [hexahedra, tetrahedra] = &curves;
+    let finest = tetrahedra.last().filter(|_| tetrahedra.len() > count("hex8"));
+    for (error, seconds) in hexahedra.iter().filter(|(error, _)| *error < LARGEST_ERROR) {
+        // the first tetrahedra that are as right; where none are, the finest take less than those would
+        let as_right = tetrahedra.iter().find(|(other, _)| other <= error).or(finest);
+        let Some((other, longer)) = as_right else { continue };
+        figures.push(Figure {
+            by_processor: None,
+            name: format!("{name}_tet4_over_hex8_at_{:.1}_percent", 100.0 * error),
+            value: longer / seconds,
+            unit: "x hex8",
+            higher_is_better: true,
+            error: *other,
+            error_of: "tip by the tetrahedra in the limit of fine meshes".to_owned(),
+            baseline: Some(1.0),
+            threads: 1,
+            samples: effort.choose(1, 3),
+            spread: 0.0,
+            bytes: 0,
+        });
     }
     Ok(figures)
 }

@@ -125,8 +125,10 @@ pub(super) const ENTRY: ShapeEntry = ShapeEntry {
     build: |values, _| {
         let text = values.text("height");
         let unfit = |field, value, expected| ShapeError::Unfit { field, value, expected };
-        let formula = Formula::compile(text, &VARIABLES).map_err(|error| {
-            unfit("height", format!("\"{text}\" ({error})"), "a formula of x and y, such as \"0.1 * sin(x)\"")
+        let formula = Formula::compile(text, &VARIABLES).map_err(|error| ShapeError::Formula {
+            field: "height",
+            variables: "x and y",
+            error: Box::new(error),
         })?;
         let corner = |name| Vec3::from_array(values.vector(name));
         let (low, high) = (corner("low"), corner("high"));

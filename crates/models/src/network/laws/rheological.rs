@@ -66,11 +66,13 @@ fn read(making: &Making) -> Result<Rheological, LinkError> {
         Ok(quantity) => Ok(quantity.value),
         Err(_) => match formula("network", text, &names) {
             Ok(formula) => Ok(formula.evaluate(&values)),
+            Err(LinkError::Formula { error, .. }) => Err(error.without_place()),
             Err(error) => Err(error.to_string()),
         },
     };
     let network = rheology::read(making.values.text("network"), &number).map_err(|error| {
-        LinkError::Text { place: "network".to_owned(), what: format!("cannot be built: {error}") }
+        let what = format!("cannot be built: {}", error.without_place());
+        LinkError::Part { place: "network".to_owned(), what, part: error.span() }
     })?;
     Ok(Rheological { network, timestep: making.timestep })
 }

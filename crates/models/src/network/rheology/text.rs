@@ -39,6 +39,26 @@ pub enum RheologyError {
     Rigid,
 }
 
+impl RheologyError {
+    /// The place in the text, where there is one.
+    pub fn span(&self) -> Option<Span> {
+        match self {
+            Self::Unexpected { span, .. }
+            | Self::UnknownElement { span, .. }
+            | Self::WrongCount { span, .. }
+            | Self::Number { span, .. }
+            | Self::TooDeep { span } => Some(*span),
+            Self::TooMany { .. } | Self::Rigid => None,
+        }
+    }
+
+    /// The message without the place, for those who show it.
+    pub fn without_place(&self) -> String {
+        let Some(span) = self.span() else { return self.to_string() };
+        self.to_string().replace(&format!(" (at {span})"), "").replace(&format!(" at {span}"), "")
+    }
+}
+
 /// Reads a network; `number(text)` gives the value of a number in SI units.
 ///
 /// # Errors
