@@ -309,7 +309,11 @@ fn faults_in_texts_point_at_their_characters() {
         )
     };
     let height = |formula: &str| {
-        format!("{BAR}[shapes.ground]\nshape = {{ name = \"height\", height = {formula} }}\n")
+        format!(
+            "format = 1\n[world]\nperiod = 0.01\n[systems.main]\nstepper = \"t_simulation\"\n\
+             [networks.n.masses.bob]\nmass = 1\n\
+             fill = {{ shape = {{ name = \"height\", height = {formula} }}, spacing = 0.5, box = [[-1, -1, 0], [1, 1, 1]] }}\n"
+        )
     };
     for (text, read) in [
         (link("{ name = \"formula\", push = \"3*(D - L0) + kk*V\" }"), "kk"),
