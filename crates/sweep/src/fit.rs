@@ -1,34 +1,45 @@
 //! Identification: values of a scene for which a probe follows a curve that was measured.
 //!
-//! Least squares `Σ r_i²`, `r_i = y(t_i) − m_i`, by Levenberg and Marquardt: `(JᵀJ + λ diag JᵀJ) δ = −Jᵀ r`, where `J` comes of one run more for each value, at once. Values
+//! Least squares `Σ r_i²`, `r_i = y(t_i) − m_i` ([`crate::least_squares`]), where the Jacobian comes of one run more for each value, at once. Values
 //! go between their bounds; where the lower is above zero, their logarithms are what steps are made in, so that none is lost among larger ones.
-//! The standard error of a value is `√(s² (JᵀJ)⁻¹_kk)`, `s² = Σ r²/(n − k)`.
+//!
+//! A curve over a probe goes one way, as the probe does: a loop of loading and unloading has two values at one place, and is refused.
 
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
 use souple_engine::Interruption;
 use souple_run::{Control, Options, Status, Trace};
 use toml::{Table, Value};
 
 use crate::SweepError;
+use crate::least_squares::{Answer, Ending, Problem, mean_square, standard_errors};
 use crate::study::Study;
 
 /// What is looked for.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// The probe that is to follow the curve.
-    pub probe: String,
-    /// Of a vector, from 0.
-    pub component: usize,
+    pub probe: Wanted,
     /// The probe that the curve is over; the time where `None`.
-    pub over: Option<(String, usize)>,
+    pub over: Option<Wanted>,
+    /// The file of the curve.
+    pub curve_file: PathBuf,
     /// Points of the curve, by growing abscissa.
     pub curve: Vec<[f64; 2]>,
     pub unknowns: Vec<Unknown>,
     /// Where a step changes no value by more than this share of its range, it ends.
     pub tolerance: f64,
     pub iterations: usize,
+}
+
+/// A probe, with its component where it is a vector.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The key that names it.
+    key: &'static str,
+    pub name: String,
+    /// From 0; `None` of what is no vector.
+    pub component: Option<usize>,
 }
 
 /// A value of the scene that is looked for.
@@ -47,22 +58,19 @@ pub struct Found {
     pub values: Vec<(f64, Option<f64>)>,
     /// Root of the mean square of what is left.
     pub residual: f64,
-    /// Share of the curve's own variance that is explained.
-    pub explained: f64,
+    /// Share of the curve's own variance that is explained; `None` where it has none.
+    pub explained: Option<f64>,
     pub iterations: usize,
     pub runs: usize,
-    pub has_converged: bool,
+    pub ending: Ending,
     /// Abscissa, measured, found.
     pub curve: Vec<[f64; 3]>,
 }
 
 const KEYS: &[&str] = &["probe", "over", "curve", "values", "tolerance", "iterations"];
 const UNKNOWN_KEYS: &[&str] = &["start", "min", "max", "unit"];
-/// Damping at the start, and the factor by which it falls and grows.
-const DAMPING: f64 = 1e-3;
-const FACTOR: f64 = 10.0;
-/// Change of a value for a slope, as a share of its range: an error of `√ε` of forward differences.
-const DIFFERENCE: f64 = 1e-6;
+/// How far a curve may go back, as a share of its range: what rounding does.
+const BACK: f64 = 1e-9;
 
 impl Fit {
     /// # Errors
@@ -81,13 +89,18 @@ impl Fit {
             Some(other) => Err(SweepError::value(format!("fit.{key}"), other.to_string(), expected)),
             None => Err(SweepError::value(format!("fit.{key}"), "missing", expected)),
         };
-        let number = |key: &str, default: f64, expected: &str| match table.get(key).map(as_number) {
-            None => Ok(default),
-            Some(Some(number)) if number > 0.0 => Ok(number),
-            Some(_) => Err(SweepError::value(format!("fit.{key}"), table[key].to_string(), expected)),
+        let curve_file: PathBuf = folder.join(text("curve", "a file of two columns with commas")?);
+        let mut curve = curve(&curve_file, &read(&curve_file)?)?;
+        let over = match table.get("over") {
+            None => None,
+            Some(_) => Some(Wanted::read("fit.over", &text("over", "a probe of the scene")?)),
         };
-        let path: PathBuf = folder.join(text("curve", "a file of two columns with commas")?);
-        let curve = curve(&path, &read(&path)?)?;
+        if over.is_some()
+            && let Some(point) = first_back(&curve)
+        {
+            return Err(SweepError::value("fit.curve", goes_back(point), ONE_WAY));
+        }
+        curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let Some(Value::Table(values)) = table.get("values") else {
             return Err(SweepError::value(
                 "fit.values",
@@ -105,15 +118,62 @@ impl Fit {
                 "at least one, and no more than points of the curve",
             ));
         }
-        let (probe, component) =
-            probe_of(&text("probe", "a probe of the scene, with .x, .y or .z of a vector")?);
-        let over = match table.get("over") {
-            None => None,
-            Some(_) => Some(probe_of(&text("over", "a probe of the scene")?)),
+        let probe =
+            Wanted::read("fit.probe", &text("probe", "a probe of the scene, with .x, .y or .z of a vector")?);
+        let tolerance = match table.get("tolerance").map(|value| (as_number(value), value)) {
+            None => 1e-6,
+            Some((Some(share), _)) if share > 0.0 && share < 1.0 => share,
+            Some((_, value)) => {
+                return Err(SweepError::value(
+                    "fit.tolerance",
+                    value.to_string(),
+                    "a number above 0, below 1",
+                ));
+            }
         };
-        let tolerance = number("tolerance", 1e-6, "a number above 0")?;
-        let iterations = number("iterations", 50.0, "a number above 0")? as usize;
-        Ok(Self { probe, component, over, curve, unknowns, tolerance, iterations })
+        let iterations = match table.get("iterations") {
+            None => 50,
+            Some(Value::Integer(count @ 1..)) => *count as usize,
+            Some(other) => {
+                let expected = "a whole number above 0";
+                return Err(SweepError::value("fit.iterations", other.to_string(), expected));
+            }
+        };
+        Ok(Self { probe, over, curve_file, curve, unknowns, tolerance, iterations })
+    }
+}
+
+impl Wanted {
+    /// `PROBE`, `PROBE.x`: the probe and its component.
+    fn read(key: &'static str, text: &str) -> Self {
+        for (component, suffix) in [".x", ".y", ".z"].into_iter().enumerate() {
+            if let Some(name) = text.strip_suffix(suffix) {
+                return Self { key, name: name.to_owned(), component: Some(component) };
+            }
+        }
+        Self { key, name: text.to_owned(), component: None }
+    }
+
+    /// Times and values of the probe.
+    fn of(&self, traces: &[Trace]) -> Result<(Vec<f64>, Vec<f64>), SweepError> {
+        let Some(trace) = traces.iter().find(|trace| trace.name == self.name) else {
+            let known: Vec<&str> = traces.iter().map(|trace| trace.name.as_str()).collect();
+            return Err(SweepError::value(self.key, &self.name, format!("a probe: {}", known.join(", "))));
+        };
+        let component = match (self.component, trace.components) {
+            (None, 1) => 0,
+            (Some(component), components) if components > 1 && component < components => component,
+            (Some(component), _) => {
+                let found = format!("{}.{}", self.name, ["x", "y", "z"][component]);
+                return Err(SweepError::value(self.key, found, format!("{}, a scalar", self.name)));
+            }
+            (None, _) => {
+                let expected = format!("a component of it: {0}.x, {0}.y or {0}.z", self.name);
+                return Err(SweepError::value(self.key, format!("{}, a vector", self.name), expected));
+            }
+        };
+        let values = trace.values.iter().skip(component).step_by(trace.components).copied().collect();
+        Ok((trace.times.clone(), values))
     }
 }
 
@@ -159,6 +219,10 @@ impl Unknown {
 
     fn value(&self, place: f64) -> f64 {
         let [low, high] = self.bounds;
+        // to the bit, so that a value at a bound is known as such
+        if place >= 1.0 {
+            return high;
+        }
         let value =
             if self.is_logarithmic() { low * (high / low).powf(place) } else { low + place * (high - low) };
         value.clamp(low, high)
@@ -198,17 +262,7 @@ fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), Swe
     }
 }
 
-/// `PROBE`, `PROBE.x`: the probe and its component.
-fn probe_of(text: &str) -> (String, usize) {
-    for (component, suffix) in [".x", ".y", ".z"].into_iter().enumerate() {
-        if let Some(probe) = text.strip_suffix(suffix) {
-            return (probe.to_owned(), component);
-        }
-    }
-    (text.to_owned(), 0)
-}
-
-/// Two columns with commas; a first line that is no numbers names them.
+/// Two columns with commas, in the order of the file; a first line that is no numbers names them.
 fn curve(path: &Path, text: &str) -> Result<Vec<[f64; 2]>, SweepError> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
@@ -227,20 +281,52 @@ fn curve(path: &Path, text: &str) -> Result<Vec<[f64; 2]>, SweepError> {
             }
         }
     }
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     if points.is_empty() {
         return Err(SweepError::value(path.display().to_string(), "no points", "lines of two numbers"));
     }
     Ok(points)
 }
 
-/// A curve between its points by straight lines, held at its ends.
-fn between(curve: &[[f64; 2]], x: f64) -> f64 {
+const ONE_WAY: &str = "places that go one way: of a loop, one of its branches";
+
+fn goes_back([before, after]: [f64; 2]) -> String {
+    format!("a curve that goes back from {before:e} to {after:e}")
+}
+
+/// Where the abscissas of a curve first go against the way they went, by more than rounding: from where, and to where.
+fn first_back(curve: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let places = || curve.iter().map(|point| point[0]);
+    let (low, high) = (places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max));
+    let least = BACK * (high - low);
+    // the farthest so far on the way, which is known from the first place that is another
+    let (mut farthest, mut way) = (curve.first()?[0], 0.0);
+    for place in places() {
+        let on = place - farthest;
+        if way == 0.0 && on.abs() > least {
+            way = on.signum();
+        }
+        if on * way < -least {
+            return Some([farthest, place]);
+        }
+        if on * way > 0.0 {
+            farthest = place;
+        }
+    }
+    None
+}
+
+/// A sorted curve between its points by straight lines. Beyond its ends it is held for as far as its points are apart there, and then there is nothing.
+fn between(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = curve.partition_point(|point| point[0] < x);
+    let held = |end: [f64; 2], next: Option<&[f64; 2]>| {
+        let apart = next.map_or(0.0, |next| (next[0] - end[0]).abs());
+        ((x - end[0]).abs() <= apart).then_some(end[1])
+    };
     match (after.checked_sub(1).map(|before| curve[before]), curve.get(after).copied()) {
-        (Some([a, from]), Some([b, to])) => from + (to - from) * (x - a) / (b - a),
-        (None, Some([_, value])) | (Some([_, value]), None) => value,
-        (None, None) => f64::NAN,
+        (Some([a, from]), Some([b, to])) => Some(from + (to - from) * (x - a) / (b - a)),
+        (None, Some(first)) => held(first, curve.get(1)),
+        (Some(last), None) => held(last, curve.len().checked_sub(2).map(|before| &curve[before])),
+        (None, None) => None,
     }
 }
 
@@ -254,8 +340,8 @@ pub struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What the scene says at the points of the curve, with its values at these places.
-    fn answer(&self, places: &[f64]) -> Result<Vec<f64>, SweepError> {
+    /// What the scene says at the points of the curve, with its values at these places, less what was measured.
+    fn residuals(&self, places: &[f64]) -> Result<Answer, SweepError> {
         let unknowns = &self.fit.unknowns;
         let values =
             unknowns.iter().zip(places).map(|(unknown, place)| unknown.setting(unknown.value(*place)));
@@ -273,171 +359,104 @@ impl Search<'_> {
             |_: &souple_run::Progress| if self.stop.is_wished() { Control::Stop } else { Control::Continue };
         let outcome =
             souple_run::run(scene, &options, &mut watch).map_err(|error| refuse(error.to_string()))?;
-        if outcome.report.status != Status::Done {
-            let why =
-                outcome.report.failure.map_or("it was interrupted".to_owned(), |failure| failure.message());
-            return Err(refuse(why));
+        match outcome.report.status {
+            Status::Done => {}
+            Status::Interrupted => return Ok(Answer::Interrupted),
+            Status::Failed => {
+                let message = outcome.report.failure.map_or(String::new(), |failure| failure.message());
+                let settings = settings.join(", ");
+                return Ok(Answer::Failed(SweepError::Failed { settings, message }));
+            }
         }
-        let column = |(name, component): (&str, usize)| -> Result<Vec<f64>, SweepError> {
-            let known =
-                || outcome.traces.iter().map(|trace| trace.name.as_str()).collect::<Vec<_>>().join(", ");
-            let is_it = |trace: &&Trace| trace.name == name && component < trace.components;
-            let found = outcome.traces.iter().find(is_it);
-            let trace =
-                found.ok_or_else(|| SweepError::value("fit.probe", name, format!("a probe: {}", known())))?;
-            Ok(trace.values.iter().skip(component).step_by(trace.components).copied().collect())
-        };
-        let ordinates = column((&self.fit.probe, self.fit.component))?;
-        let abscissas = match &self.fit.over {
-            Some((probe, component)) => column((probe, *component))?,
-            None => outcome.traces.first().map_or(Vec::new(), |trace| trace.times.clone()),
-        };
+        self.compared(&outcome.traces)
+    }
+
+    /// # Errors
+    /// A probe is not there.
+    fn compared(&self, traces: &[Trace]) -> Result<Answer, SweepError> {
+        let fit = self.fit;
+        let (times, ordinates) = fit.probe.of(traces)?;
+        let abscissas = fit.over.as_ref().map(|over| over.of(traces)).transpose()?;
+        let abscissas = abscissas.map_or(times, |(_, values)| values);
         let mut curve: Vec<[f64; 2]> = abscissas.into_iter().zip(ordinates).map(|(x, y)| [x, y]).collect();
+        let failed = |key: &str, value: String, expected: &str| {
+            Ok(Answer::Failed(SweepError::value(key, value, expected)))
+        };
+        if let Some([x, y]) = curve.iter().find(|point| !point.iter().all(|number| number.is_finite())) {
+            let (wanted, found) = match &fit.over {
+                Some(over) if !x.is_finite() => (over, format!("{x} at {} = {y:e}", fit.probe.name)),
+                _ => (&fit.probe, format!("{y} at the abscissa {x:e}")),
+            };
+            return failed(wanted.key, found, "a probe that has a finite number all along the run");
+        }
+        if let (Some(over), Some(point)) = (&fit.over, first_back(&curve)) {
+            return failed(over.key, goes_back(point), ONE_WAY);
+        }
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Ok(self.fit.curve.iter().map(|[x, _]| between(&curve, *x)).collect())
+        let mut residuals = Vec::with_capacity(fit.curve.len());
+        for [x, measured] in &fit.curve {
+            let Some(found) = between(&curve, *x) else {
+                let end = |point: Option<&[f64; 2]>| point.map_or(f64::NAN, |point| point[0]);
+                let reached = format!(
+                    "points from {:e} to {:e}, where the run leads",
+                    end(curve.first()),
+                    end(curve.last())
+                );
+                return failed("fit.curve", format!("a curve with a point at {x:e}"), &reached);
+            };
+            residuals.push(found - measured);
+        }
+        Ok(Answer::Residuals(residuals))
     }
 
-    fn residuals(&self, places: &[f64]) -> Result<Vec<f64>, SweepError> {
-        let found = self.answer(places)?;
-        Ok(found.iter().zip(&self.fit.curve).map(|(found, [_, measured])| found - measured).collect())
-    }
-
-    /// Residuals of several places at once.
-    fn all(&self, places: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SweepError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.count.max(1)).build()?;
-        pool.install(|| places.par_iter().map(|places| self.residuals(places)).collect())
-    }
-
-    /// Looks for the values; `watch(iterations, residual)` is told of each step.
+    /// Looks for the values; `watch(iterations, residual)` is told of each step. `None`: it was interrupted before the first run had ended.
     ///
     /// # Errors
-    /// A scene with the values to try cannot be run, a probe is not there.
-    pub fn run(&self, watch: &mut dyn FnMut(usize, f64)) -> Result<Found, SweepError> {
-        let (unknowns, points) = (&self.fit.unknowns, self.fit.curve.len());
-        let mut at: Vec<f64> = unknowns.iter().map(|unknown| unknown.place(unknown.start)).collect();
-        let mut residuals = self.residuals(&at)?;
-        let (mut damping, mut runs, mut iterations, mut has_converged) = (DAMPING, 1, 0, false);
-        let mut jacobian = vec![Vec::new(); at.len()];
-        let mean_square = |residuals: &[f64]| residuals.iter().map(|r| r * r).sum::<f64>() / points as f64;
-        while !has_converged && iterations < self.fit.iterations && !self.stop.is_wished() {
-            iterations += 1;
-            // inwards at the upper bound
-            let steps: Vec<f64> =
-                at.iter().map(|place| if *place > 0.5 { -DIFFERENCE } else { DIFFERENCE }).collect();
-            let moved = |k: usize| {
-                let mut moved = at.clone();
-                moved[k] += steps[k];
-                moved
-            };
-            let beside = self.all(&(0..at.len()).map(moved).collect::<Vec<_>>())?;
-            runs += at.len();
-            for (column, (beside, step)) in jacobian.iter_mut().zip(beside.iter().zip(&steps)) {
-                *column = beside.iter().zip(&residuals).map(|(b, r)| (b - r) / step).collect();
-            }
-            let before = mean_square(&residuals);
-            loop {
-                let step = damped_step(&jacobian, &residuals, damping);
-                let next: Vec<f64> =
-                    at.iter().zip(&step).map(|(place, step)| (place + step).clamp(0.0, 1.0)).collect();
-                let change = at.iter().zip(&next).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                has_converged = change <= self.fit.tolerance;
-                if has_converged {
-                    break;
-                }
-                let tried = self.residuals(&next)?;
-                runs += 1;
-                if mean_square(&tried) < before {
-                    (at, residuals) = (next, tried);
-                    damping = (damping / FACTOR).max(f64::EPSILON);
-                    break;
-                }
-                damping *= FACTOR;
-            }
-            watch(iterations, mean_square(&residuals).sqrt());
-        }
-        let square = mean_square(&residuals);
-        let mean = self.fit.curve.iter().map(|[_, y]| y).sum::<f64>() / points as f64;
-        let variance = self.fit.curve.iter().map(|[_, y]| (y - mean).powi(2)).sum::<f64>() / points as f64;
-        let errors = standard_errors(&jacobian, square * points as f64, points);
-        let value = |(k, unknown): (usize, &Unknown)| {
-            (unknown.value(at[k]), errors[k].map(|error| error * unknown.rate(at[k])))
+    /// The scene cannot be run with the values of the start, or read with those to try; a probe is not there, has no numbers or no value where the
+    /// curve has points; a value changes nothing.
+    pub fn run(&self, watch: &mut dyn FnMut(usize, f64)) -> Result<Option<Found>, SweepError> {
+        let (fit, unknowns) = (self.fit, &self.fit.unknowns);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.count.max(1)).build()?;
+        let without_effect = |index: usize| {
+            let unknown = &unknowns[index];
+            let place = format!("fit.values.\"{}\"", unknown.path);
+            let found = format!("a value that changes nothing at {:e}", unknown.start);
+            SweepError::value(place, found, format!("one on which `{}` depends", fit.probe.name))
         };
-        let curve = self.fit.curve.iter().zip(&residuals).map(|([x, y], r)| [*x, *y, y + r]).collect();
-        Ok(Found {
+        let problem = Problem {
+            start: unknowns.iter().map(|unknown| unknown.place(unknown.start)).collect(),
+            tolerance: fit.tolerance,
+            iterations: fit.iterations,
+            residuals: &|places| self.residuals(places),
+            without_effect: &without_effect,
+            pool: &pool,
+        };
+        let Some(found) = problem.solve(watch)? else { return Ok(None) };
+        let square = mean_square(&found.residuals);
+        let points = fit.curve.len() as f64;
+        let mean = fit.curve.iter().map(|[_, y]| y).sum::<f64>() / points;
+        let variance = fit.curve.iter().map(|[_, y]| (y - mean).powi(2)).sum::<f64>() / points;
+        let errors = standard_errors(&found);
+        let value = |(k, unknown): (usize, &Unknown)| {
+            let place = found.places[k];
+            (unknown.value(place), errors[k].map(|error| error * unknown.rate(place)))
+        };
+        let curve = fit.curve.iter().zip(&found.residuals).map(|([x, y], r)| [*x, *y, y + r]).collect();
+        Ok(Some(Found {
             values: unknowns.iter().enumerate().map(value).collect(),
             residual: square.sqrt(),
-            explained: 1.0 - square / variance,
-            iterations,
-            runs,
-            has_converged,
+            explained: (variance > 0.0).then(|| 1.0 - square / variance),
+            iterations: found.iterations,
+            runs: found.runs,
+            ending: found.ending,
             curve,
-        })
+        }))
     }
-}
-
-/// `JᵀJ`
-fn normal(jacobian: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum();
-    jacobian.iter().map(|a| jacobian.iter().map(|b| dot(a, b)).collect()).collect()
-}
-
-/// `(JᵀJ + λ diag JᵀJ) δ = −Jᵀ r`; a value that changes nothing stays.
-fn damped_step(jacobian: &[Vec<f64>], residuals: &[f64], damping: f64) -> Vec<f64> {
-    let mut matrix = normal(jacobian);
-    let right = jacobian.iter().map(|column| -column.iter().zip(residuals).map(|(j, r)| j * r).sum::<f64>());
-    for (k, row) in matrix.iter_mut().enumerate() {
-        row[k] = if row[k] > 0.0 { row[k] * (1.0 + damping) } else { 1.0 };
-    }
-    solve(matrix, right.collect()).unwrap_or_else(|| vec![0.0; jacobian.len()])
-}
-
-fn standard_errors(jacobian: &[Vec<f64>], square_sum: f64, points: usize) -> Vec<Option<f64>> {
-    let count = jacobian.len();
-    let freedom = points.saturating_sub(count);
-    let of = |k: usize| {
-        let unit = (0..count).map(|i| f64::from(u8::from(i == k))).collect();
-        let column = solve(normal(jacobian), unit)?;
-        (freedom > 0 && column[k] > 0.0).then(|| (square_sum / freedom as f64 * column[k]).sqrt())
-    };
-    (0..count).map(of).collect()
-}
-
-/// Gaussian elimination with pivots; `None` where the matrix is singular.
-fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
-    let count = right.len();
-    for k in 0..count {
-        let pivot = (k..count).max_by(|a, b| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs()))?;
-        matrix.swap(k, pivot);
-        right.swap(k, pivot);
-        if !(matrix[k][k].abs() > 0.0 && matrix[k][k].is_finite()) {
-            return None;
-        }
-        for i in k + 1..count {
-            let factor = matrix[i][k] / matrix[k][k];
-            for j in k..count {
-                matrix[i][j] -= factor * matrix[k][j];
-            }
-            right[i] -= factor * right[k];
-        }
-    }
-    for k in (0..count).rev() {
-        let above: f64 = (k + 1..count).map(|j| matrix[k][j] * right[j]).sum();
-        right[k] = (right[k] - above) / matrix[k][k];
-    }
-    Some(right)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Elimination exchanges rows where a pivot is nothing, and says where there is no answer.
-    #[test]
-    fn systems_are_solved() {
-        let found = solve(vec![vec![0.0, 2.0], vec![4.0, 1.0]], vec![6.0, 11.0]).unwrap();
-        assert!((found[0] - 2.0).abs() < 1e-15 && (found[1] - 3.0).abs() < 1e-15, "{found:?}");
-        assert!(solve(vec![vec![1.0, 2.0], vec![2.0, 4.0]], vec![1.0, 1.0]).is_none());
-    }
 
     /// Values come back from their places between bounds, on a scale of logarithms and on a plain one.
     #[test]
@@ -447,6 +466,31 @@ mod tests {
             assert!((unknown.value(unknown.place(2.0)) - 2.0).abs() < 1e-12);
             assert_eq!([unknown.value(0.0), unknown.value(1.0)], bounds);
         }
+        // 3 (7/3)^1 is no 7 to the bit
+        for high in (4..100).map(f64::from) {
+            let unknown =
+                Unknown { path: "a".to_owned(), unit: String::new(), start: 3.0, bounds: [3.0, high] };
+            assert_eq!(unknown.value(1.0), high);
+        }
+    }
+
+    /// A curve is straight between its points, is held for a period at its ends, and is nothing beyond.
+    #[test]
+    fn curves_have_ends() {
+        let curve = [[0.0, 1.0], [0.5, 2.0], [1.0, 4.0]];
+        let at = [-0.6, -0.5, 0.25, 1.0, 1.5, 1.6].map(|x| between(&curve, x));
+        assert_eq!(at, [None, Some(1.0), Some(1.5), Some(4.0), Some(4.0), None]);
+        assert_eq!(between(&[], 0.0), None);
+    }
+
+    /// Loading and unloading is told with the place where it turns; rest at the start and rounding are not.
+    #[test]
+    fn loops_are_seen() {
+        let back = |places: &[f64]| first_back(&places.iter().map(|x| [*x, 0.0]).collect::<Vec<_>>());
+        assert_eq!(back(&[0.0, 0.0, 1.0, 2.0, 1.5, 0.0]), Some([2.0, 1.5]));
+        assert_eq!(back(&[0.0, -1.0, -2.0, -1.0]), Some([-2.0, -1.0]));
+        assert_eq!(back(&[0.0, 1e-12, -1e-12, 1.0, 1.0 - 1e-12, 2.0]), None);
+        assert_eq!(back(&[3.0, 2.0, 2.0, 1.0]), None);
     }
 
     #[test]
@@ -470,6 +514,17 @@ mod tests {
                 "`fit.values.\"k\".at` is unknown",
             ),
             ("values.k = { start = 1, min = 0, max = 3 }\ntolerance = 0\n", "1,2\n", "`fit.tolerance` is 0"),
+            ("values.k = { start = 1, min = 0, max = 3 }\ntolerance = inf\n", "1,2\n", "above 0, below 1"),
+            (
+                "values.k = { start = 1, min = 0, max = 3 }\niterations = 0.5\n",
+                "1,2\n",
+                "`fit.iterations` is 0.5",
+            ),
+            (
+                "over = \"way\"\nvalues.k = { start = 1, min = 0, max = 3 }\n",
+                "1,2\n2,3\n1.5,2\n",
+                "`fit.curve` is a curve that goes back from 2e0 to 1.5e0; expected places that go one way",
+            ),
             ("values.k = { start = 1, min = 0, max = 3 }\n", "t,y\n1,x\n", "line 2` is 1,x"),
             ("values.k = { start = 1, min = 0, max = 3 }\n", "t,y\n", "no points"),
             ("range = 1\n", "1,2\n", "`fit.range` is unknown"),

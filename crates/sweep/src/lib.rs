@@ -2,11 +2,12 @@
 //!
 //! A study is a TOML file (see [`Study`]). [`sweep`] makes the runs that the file does not hold yet, so that one that was
 //! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone. Where a study has a `fit`, values are looked
-//! for instead for which a probe follows a measured curve ([`fit`]).
+//! for instead for which a probe follows a measured curve ([`Search`]).
 
 mod database;
-pub mod fit;
+mod fit;
 pub mod graphs;
+mod least_squares;
 mod study;
 mod sweep;
 mod table;
@@ -15,6 +16,7 @@ use std::path::PathBuf;
 
 pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
+pub use least_squares::Ending;
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};
@@ -30,6 +32,8 @@ pub enum SweepError {
     Value { path: String, value: String, expected: String },
     #[error("run {run} ({settings}): {message}")]
     Scene { run: usize, settings: String, message: String },
+    #[error("with {settings}: {message}")]
+    Failed { settings: String, message: String },
     #[error("{}: {source}", .path.display())]
     Database { path: PathBuf, source: rusqlite::Error },
     #[error("{}: it holds results of `{found}`, not of `{wanted}`; expected a file of this study, or a new one", .path.display())]

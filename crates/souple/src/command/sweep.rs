@@ -1,11 +1,11 @@
 //! `souple sweep`: the runs of a study, their table and graphs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Fit, Progress, Search, Study, SweepError, Unknown, Workers, fingerprints, graphs,
+    Database, Ending, Fit, Progress, Search, Study, SweepError, Unknown, Workers, fingerprints, graphs,
     sweep as make_runs, table_of,
 };
 use souple_table::counted;
@@ -47,6 +47,7 @@ impl From<SweepError> for Refusal {
             SweepError::Scene { settings, .. } => {
                 Self::request("study", settings, "values that the scene takes", message)
             }
+            SweepError::Failed { .. } => Self::work("run", message),
             SweepError::OtherStudy { found, .. } => {
                 Self::request("database", found, "a file of this study", message)
             }
@@ -121,7 +122,15 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
 
 /// Looks for the values of a fit, and writes the curve that they give beside the measured one.
 fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refusal> {
-    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("csv"));
+    for (option, is_given) in [("--again", arguments.again), ("--threads", arguments.threads > 1)] {
+        if is_given {
+            let message =
+                format!("{option} is of runs that vary; a study with a `fit` takes --jobs and --out");
+            return Err(Refusal::request("option", option, "--jobs, --out", message));
+        }
+    }
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("fit.csv"));
+    keep_inputs(&out, [&arguments.study, &study.scene, &fit.curve_file])?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
@@ -132,10 +141,11 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     };
     let found = search.run(&mut watch)?;
     drop(meter);
+    let Some(found) = found else { return Ok(End::Interrupted) };
     let column =
         |name: &str, index: usize| Column::new(name, found.curve.iter().map(|point| point[index]).collect());
-    let abscissa = fit.over.as_ref().map_or("time [s]", |(probe, _)| probe.as_str());
-    let columns = [column(abscissa, 0), column("measured", 1), column(&fit.probe, 2)];
+    let abscissa = fit.over.as_ref().map_or("time [s]", |over| over.name.as_str());
+    let columns = [column(abscissa, 0), column("measured", 1), column(&fit.probe.name, 2)];
     souple_io::write_csv(&out, &columns)?;
     let of_values = fit.unknowns.iter().zip(&found.values);
     if arguments.json {
@@ -157,7 +167,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
             "explained": found.explained,
             "iterations": found.iterations,
             "runs": found.runs,
-            "converged": found.has_converged,
+            "converged": found.ending == Ending::Converged,
             "points": found.curve.len(),
             "files": [out.display().to_string()],
         }));
@@ -168,26 +178,42 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
             let unit = if unknown.unit.is_empty() { String::new() } else { format!(" {}", unknown.unit) };
             print_line(format_args!("{} = {value:.9e} {error}{unit}{bound}", unknown.path));
         }
+        let explained =
+            found.explained.map_or(String::new(), |share| format!(", {share:.6} of the variance explained"));
         print_line(format_args!(
-            "residual {:.3e}, {:.6} of the variance explained, {}, {}",
+            "residual {:.3e}{explained}, {}, {}",
             found.residual,
-            found.explained,
             counted(found.iterations as u64, "iteration"),
             counted(found.runs as u64, "run")
         ));
         print_line(format_args!("  {}", out.display()));
     }
-    if interruption::is_interrupted() {
-        return Ok(End::Interrupted);
+    let iterations = counted(found.iterations as u64, "iteration");
+    match found.ending {
+        Ending::Converged => return Ok(End::Done),
+        Ending::Interrupted => return Ok(End::Interrupted),
+        Ending::Stalled => print_note(format_args!(
+            "warning: it ended after {iterations} at values that no step betters, though slopes say that they are not the best: the probe \
+             may leap with a value, or runs beside it fail"
+        )),
+        Ending::OutOfIterations => {
+            print_note(format_args!("warning: it ended after {iterations}, before steps were small enough"));
+        }
     }
-    if !found.has_converged {
-        print_note(format_args!(
-            "warning: it ended after {} iterations, before steps were small enough",
-            found.iterations
-        ));
-        return Ok(End::Failed);
+    Ok(End::Failed)
+}
+
+/// Refuses to write over what a study is read from.
+fn keep_inputs(out: &Path, inputs: [&PathBuf; 3]) -> Result<(), Refusal> {
+    let Ok(place) = out.canonicalize() else { return Ok(()) };
+    match inputs.iter().find(|input| input.canonicalize().is_ok_and(|input| input == place)) {
+        None => Ok(()),
+        Some(_) => {
+            let found = out.display().to_string();
+            let message = format!("{found} is what the study is read from; expected another file in `--out`");
+            Err(Refusal::request("option", found, "a file that the study does not read", message))
+        }
     }
-    Ok(End::Done)
 }
 
 /// Columns under each other.
