@@ -120,23 +120,26 @@ impl Course {
                 }
             }
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-            session.watch_energy()?;
+            // told when what there is has been written
+            let watched = session.watch_energy();
             let last = step == steps;
             let write_clock = Instant::now();
             if last {
                 // what was done to a live world after its last step
                 dues.make(session)?;
             }
-            if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
+            if last || watched.is_err() || options.hash_every.is_some_and(|every| step.is_multiple_of(every))
+            {
                 session.push_hash();
             }
             frames.write(folder.as_mut(), session, step)?;
             let wall_seconds = session.clock.elapsed().as_secs_f64();
             let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
             let stops = watch(&progress) == Control::Stop && !last;
-            let is_due = |every: u64| last || stops || step.is_multiple_of(every);
+            let is_due = |every: u64| last || stops || watched.is_err() || step.is_multiple_of(every);
             keep_state(session, folder.as_mut().filter(|_| options.snapshot_every.is_some_and(is_due)))?;
             session.around.write += write_clock.elapsed().as_secs_f64();
+            watched?;
             if stops {
                 session.push_hash();
                 return Ok(Status::Interrupted);

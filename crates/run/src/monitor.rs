@@ -2,9 +2,10 @@
 //!
 //! `B = T + U + Q − C − W` of what moves, what is stored, what was given off, what controls and couplings made, and the work from outside
 //! ([`souple_scene::power_from_outside`], by the trapezoidal rule over periods). No law makes `B` grow; a step that is too long does, and then exponentially: it is told
-//! when `B` stands above its lowest value so far by `growth` times the greatest kinetic energy of the first half of the time that has
-//! passed. A motion that keeps its energy up to the error of its scheme stays far below that, and what grows as `e^{γt}` is above it
-//! once `e^{γt/2}` is of the order of `growth`.
+//! when `B` stands above its lowest value so far by `growth` times the energy that was exchanged: the greatest of the kinetic energy and of what went into and out of
+//! store in the first half of the time that has passed, and of the work that was done until now. A motion that keeps its energy up to the error of its scheme stays far
+//! below that, also one that begins late, since what begins it does work; what grows as `e^{γt}` is above it once `e^{γt/2}` is of the order of
+//! `growth`: the work of led points grows as `e^{γt/2}` only.
 
 use souple_engine::World;
 use souple_scene::spec::world::MonitorSpec;
@@ -12,6 +13,10 @@ use souple_scene::{BodyInfo, power_from_outside};
 
 /// Periods that pass before it says anything: schemes of the first order are off by a period at a start from rest.
 const FIRST: usize = 32;
+/// Rounding of the sums, as a share of what is summed.
+const ROUNDING: f64 = 1e-11;
+/// Values that are held of the time that has passed.
+const HELD: usize = 1024;
 
 /// Energy grew without work.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,14 +30,14 @@ pub struct Grown {
     pub speed: f64,
     /// How much more there is than at the least [J].
     pub excess: f64,
-    /// The greatest kinetic energy in the first half of the time [J].
+    /// What was exchanged [J].
     pub reference: f64,
 }
 
 impl Grown {
     pub fn message(&self) -> String {
         format!(
-            "at {:.6} s there are {:.3e} J more than work can account for, {:.3} times the greatest kinetic energy up to half of that time; most of it \
+            "at {:.6} s there are {:.3e} J more than work can account for, {:.3} times what moved, was stored and worked before; most of it \
              is in `{}`, whose point {} moves at {:.3e} m/s: the step may be too long, see `souple check`",
             self.time,
             self.excess,
@@ -50,12 +55,55 @@ pub struct Monitor {
     spec: MonitorSpec,
     /// `B` at the least [J].
     lowest: f64,
-    /// Greatest kinetic energy up to each period [J].
-    kinetic: Vec<f64>,
-    /// `W` [J], and the power at the last period [W].
+    /// `U` at the last period, and the sum of its changes [J].
+    stored: Option<f64>,
+    turned: f64,
+    /// Greatest kinetic energy or sum of changes of `U` up to each period [J].
+    exchanged: History,
+    /// `W` and the sum of what it changed by [J], and the power at the last period [W].
     work: f64,
+    worked: f64,
     power: f64,
     pub grown: Option<Grown>,
+}
+
+/// Values that never fall, thinned out by half whenever there are too many.
+#[derive(Clone, Debug)]
+struct History {
+    /// Of the values `0, stride, 2 stride, …`.
+    values: Vec<f64>,
+    stride: usize,
+    count: usize,
+    last: f64,
+}
+
+impl History {
+    fn new() -> Self {
+        Self { values: Vec::with_capacity(HELD), stride: 1, count: 0, last: 0.0 }
+    }
+
+    /// Takes the next one, or the last again where that is greater.
+    fn push(&mut self, value: f64) {
+        // what is no number stays
+        self.last = if value <= self.last { self.last } else { value };
+        if self.count.is_multiple_of(self.stride) {
+            if self.values.len() == HELD {
+                let mut index = 0;
+                self.values.retain(|_| {
+                    index += 1;
+                    index % 2 == 1
+                });
+                self.stride *= 2;
+            }
+            self.values.push(self.last);
+        }
+        self.count += 1;
+    }
+
+    /// The value at half the time, or up to `2/HELD` of the time before.
+    fn half(&self) -> f64 {
+        self.values[self.count / 2 / self.stride]
+    }
 }
 
 impl Monitor {
@@ -63,8 +111,11 @@ impl Monitor {
         let mut monitor = Self {
             spec,
             lowest: f64::INFINITY,
-            kinetic: Vec::new(),
+            stored: None,
+            turned: 0.0,
+            exchanged: History::new(),
             work: 0.0,
+            worked: 0.0,
             power: power_from_outside(world),
             grown: None,
         };
@@ -83,11 +134,15 @@ impl Monitor {
         let dissipated: f64 = energy.by_force.iter().map(|(_, energy)| energy.dissipated).sum();
         let made: f64 =
             energy.made_by_control.iter().chain(&energy.made_by_coupling).map(|(_, made)| made).sum();
-        let balance = energy.total() + dissipated - made - self.work;
+        let total = energy.total();
+        let balance = total + dissipated - made - self.work;
         self.lowest = self.lowest.min(balance);
-        let before = self.kinetic.last().copied().unwrap_or(0.0);
-        self.kinetic.push(before.max(energy.kinetic));
-        (balance - self.lowest, self.kinetic[self.kinetic.len() / 2])
+        let stored = total - energy.kinetic;
+        self.turned += (stored - self.stored.replace(stored).unwrap_or(stored)).abs();
+        self.exchanged.push(energy.kinetic.max(self.turned));
+        let summed = energy.kinetic + stored.abs() + dissipated.abs() + made.abs() + self.work.abs();
+        let reference = self.exchanged.half().max(self.worked).max(ROUNDING * summed);
+        (balance - self.lowest, reference)
     }
 
     /// Looks at a period that has passed; what it has found the first time.
@@ -96,11 +151,14 @@ impl Monitor {
             return None;
         }
         let power = power_from_outside(world);
-        self.work += 0.5 * (self.power + power) * world.model().period;
+        let done = 0.5 * (self.power + power) * world.model().period;
+        self.work += done;
+        self.worked += done.abs();
         self.power = power;
         let (excess, reference) = self.take(world);
         // what is no number is not below it either
-        let is_well = self.kinetic.len() <= FIRST || excess <= self.spec.growth * reference;
+        let is_well =
+            self.exchanged.count <= FIRST || (excess.is_finite() && excess <= self.spec.growth * reference);
         if is_well {
             return None;
         }
@@ -115,5 +173,27 @@ impl Monitor {
         let (time, body) = (world.time(), body.name.clone());
         self.grown = Some(Grown { time, body, point, speed, excess, reference });
         self.grown.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However long the time, what is held does not grow, and half the time is known to two parts in a thousand.
+    #[test]
+    fn history_is_thinned() {
+        let mut history = History::new();
+        for value in 0..100_000 {
+            history.push(f64::from(value));
+            let (half, count) = (history.half(), f64::from(value + 1));
+            assert!(
+                half <= 0.5 * count && half >= 0.5 * count - 1.0 - 2.0 * count / HELD as f64,
+                "{half} of {count}"
+            );
+        }
+        assert!(history.values.len() <= HELD);
+        history.push(3.0);
+        assert_eq!(history.last, 99_999.0);
     }
 }

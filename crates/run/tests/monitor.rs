@@ -73,3 +73,40 @@ fn work_is_no_growth() {
         assert!(told(&outcome).is_empty(), "{what}: {:?}", told(&outcome));
     }
 }
+
+/// Nothing moves in the first second; then an end is led, or a force acts: what begins late is no growth either.
+#[test]
+fn late_starts_are_no_growth() {
+    let held = "[[networks.swing.pins]]\nregion = \"hand\"\n";
+    let led = "motion = { formula = [\"if(t < 1, 0, 0.01 * (1 - cos(10 * (t - 1))))\", 0, 0] }\n";
+    let force = "[[networks.swing.loads]]\nregion = \"bob\"\nforce = [\"if(t < 1, 0, sqrt(t - 1))\", 0, 0]\n";
+    for drive in [format!("{held}{led}"), format!("{held}{force}")] {
+        let outcome = go(&format!("{DRIVEN}{drive}"), &["run.duration=\"3 s\""]);
+        assert!(outcome.report.energy.1.total() > 1e-4, "{drive}: nothing moves");
+        assert!(told(&outcome).is_empty(), "{drive}: {:?}", told(&outcome));
+    }
+}
+
+/// A load without a value before the start is watched from the start on.
+#[test]
+fn formulas_begin_at_the_start() {
+    let drive = "[[networks.swing.pins]]\nregion = \"hand\"\n[[networks.swing.loads]]\nregion = \"bob\"\nforce = [\"sqrt(t)\", 0, 0]\n";
+    let outcome = go(&format!("{DRIVEN}{drive}"), &["run.duration=\"3 s\""]);
+    assert!(told(&outcome).is_empty(), "{:?}", told(&outcome));
+}
+
+/// What has no kinetic energy is not watched, and what does work unseen is named.
+#[test]
+fn what_cannot_be_watched_is_said() {
+    let read = |settings: &[&str]| {
+        let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+        souple_scene::read_text("watched", LATTICE, Path::new("."), &settings)
+    };
+    let watch = "run.monitor={ growth = 1 }";
+    let refused = read(&[watch, "systems.main.stepper=static"]).err().expect("no inertia").to_string();
+    assert!(refused.contains("`run.monitor` watches what moves"), "{refused}");
+    let wax = include_str!("../../../scenes/heat/scene.toml");
+    let scene = souple_scene::read_text("watched", wax, Path::new("."), &[watch.to_owned()]).unwrap();
+    let is_said = |warning: &String| warning.contains("does not know the work of bonds that set in");
+    assert!(scene.warnings.iter().any(is_said), "{:?}", scene.warnings);
+}

@@ -74,11 +74,13 @@ impl Fusible {
         }
         let (k, z) = (firmness * self.stiffness, firmness * self.damping);
         let (elongation, moved) = (reach.length - rest, reach.length - reach.before);
+        // while it sets, its rest length goes with its ends
+        let elastic = if sets { 0.0 } else { -k };
         Bond {
             push: -k * elongation - z * moved,
             stored: 0.5 * k * elongation * elongation,
             heat: z * moved * moved,
-            slopes: [-k - z, z],
+            slopes: [elastic - z, z],
             rest,
         }
     }
@@ -167,11 +169,16 @@ mod tests {
     #[test]
     fn slopes_are_those_of_the_push() {
         let (wax, h) = (wax(), 1e-6);
-        let push = |length: f64, before: f64| wax.bond(&at(length, before), 312.0, 1.1).push;
-        let slopes = wax.bond(&at(1.3, 1.2), 312.0, 1.1).slopes;
-        // the push is linear: differences carry rounding alone, ε |φ|/h
-        let bound = 1e-15 * 30.0 / h;
-        assert!((slopes[0] - (push(1.3 + h, 1.2) - push(1.3 - h, 1.2)) / (2.0 * h)).abs() < bound);
-        assert!((slopes[1] - (push(1.3, 1.2 + h) - push(1.3, 1.2 - h)) / (2.0 * h)).abs() < bound);
+        // of a bond that stands, and of one that is just setting
+        for (rest, length, before) in [(1.1, 1.3, 1.2), (MOLTEN, 1.1, 1.0)] {
+            let push = |length: f64, before: f64| wax.bond(&at(length, before), 312.0, rest).push;
+            let slopes = wax.bond(&at(length, before), 312.0, rest).slopes;
+            // the push is linear: differences carry rounding alone, ε |φ|/h
+            let bound = 1e-15 * 30.0 / h;
+            let by_length = (push(length + h, before) - push(length - h, before)) / (2.0 * h);
+            let by_before = (push(length, before + h) - push(length, before - h)) / (2.0 * h);
+            assert!((slopes[0] - by_length).abs() < bound, "{rest}: {slopes:?}, {by_length}");
+            assert!((slopes[1] - by_before).abs() < bound, "{rest}: {slopes:?}, {by_before}");
+        }
     }
 }

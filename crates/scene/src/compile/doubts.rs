@@ -12,6 +12,7 @@ use super::{Draft, contact};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::spec::body::Body;
+use crate::spec::contact::ShapeSpec;
 use crate::spec::mesh::MeshSpec;
 
 /// Young's moduli of matter [Pa]: the softest gels have tens of pascals, diamond 1.2·10¹².
@@ -58,7 +59,31 @@ pub fn warn(draft: &mut Draft) {
         }
     }
     warnings.extend(of_surfaces(draft));
+    if draft.spec.run.monitor.is_some() {
+        let names: Vec<String> = unwatched(draft);
+        if !names.is_empty() {
+            warnings.push(format!(
+                "`run.monitor` does not know the work of {}: it may take it for growth, or growth for it",
+                names.join(", ")
+            ));
+        }
+    }
     draft.warnings.extend(warnings);
+}
+
+/// What does work that the monitor of energy knows nothing of.
+fn unwatched(draft: &Draft) -> Vec<String> {
+    let moves = |shape: &&ShapeSpec| shape.motion.is_some() || shape.rotation.is_some();
+    let shapes = draft.spec.shapes.iter().filter(moves).map(|shape| format!("the shape `{}`", shape.name));
+    let hands = draft.spec.hands.iter().map(|hand| format!("the hand `{}`", hand.name));
+    let melts = |body: &&Body| {
+        body.network
+            .as_ref()
+            .is_some_and(|network| network.crowds.iter().any(|crowd| crowd.fusible.is_some()))
+    };
+    let bonds =
+        draft.spec.bodies.iter().filter(melts).map(|body| format!("bonds that set in `{}`", body.name));
+    shapes.chain(hands).chain(bonds).collect()
 }
 
 /// What is wrong with the surface files of shapes that bodies touch: they are closed, or they would be refused.

@@ -153,6 +153,10 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     for (system, spec) in draft.systems.iter().zip(&spec.systems) {
         check_stepper(system, spec, log);
         let site = spec.stepper.as_ref().map_or(&spec.site, |stepper| &stepper.site);
+        if draft.spec.run.monitor.is_some() && !system.stepper.has_inertia() {
+            let message = "this stepper moves no masses, and `run.monitor` watches what moves";
+            log.add(Code::Conflict, site, message, "a stepper with inertia, or no `run.monitor`");
+        }
         if let Some(doubt) = doubts::of_solver(system) {
             draft.warnings.push(format!("{}: {doubt}", draft.place(site)));
         }

@@ -82,7 +82,9 @@ pub fn power_from_outside(world: &mut World) -> f64 {
                 let (at, scratch) = (system.view(index, &ws.rows, state, around), &mut ws.scratches[index]);
                 if conservative {
                     let mut stored = |time: f64| force.energy(&Configuration { time, ..at }, scratch).stored;
-                    power += (stored(at.time + 0.5 * period) - stored(at.time - 0.5 * period)) / period;
+                    // there is nothing before the start: a formula may have no value there
+                    let (from, to) = ((at.time - 0.5 * period).max(0.0), at.time + 0.5 * period);
+                    power += (stored(to) - stored(from)) / (to - from);
                 } else {
                     force.add_force(&at, scratch, &mut forces);
                 }
