@@ -18,6 +18,7 @@ fn wrong_heat_is_refused() {
         (format!("{fusible}.exchange=\"1\""), "both `exchange` and `ambient`"),
         (format!("{fusible}.temperature=\"-1\""), "starts at -1 K"),
         (format!("{fusible}.capacity=0"), "capacity"),
+        (format!("{fusible}.heating=\"1/t\""), "heated by inf W at the start"),
         ("networks.pair.space=algorithmic".to_owned(), "`fusible` is in SI units"),
         (
             r#"networks.pair.crowds[0].law={ name = "finite_state", states = { a = "0 * m1 * m2 * m3" }, memory = { m1 = "0", m2 = "0", m3 = "0" } }"#
@@ -59,4 +60,18 @@ fn bonds_stand_in_state_too() {
         // led ends are where they are led, whatever the stepper; a step of temperature more or less at the time it sets changes nothing
         assert!((pull(stepper) - 3.0).abs() < 1e-9, "{stepper}: {}", pull(stepper));
     }
+}
+
+/// Heat that would run away, and masses with two temperatures, are refused.
+#[test]
+fn heat_has_one_way_and_one_place() {
+    let fusible = "networks.pair.crowds[0].fusible";
+    let cold = [format!("{fusible}.exchange=\"-1\""), format!("{fusible}.ambient=\"300\"")];
+    let message = read(HEAT, &[&cold[0], &cold[1]]).err().expect("it runs away");
+    assert!(message.contains("exchanges -1 W/K with what is around it"), "{message}");
+    let place = |words: &str| HEAT.find(words).expect("a table");
+    let (from, to) = (place("[[networks.rod.crowds]]"), place("[networks.pair.masses.hold]"));
+    let twice = format!("{}{}{}", &HEAT[..to], &HEAT[from..to], &HEAT[to..]);
+    let message = read(&twice, &[]).err().expect("two temperatures");
+    assert!(message.contains("mass 0 of network `rod` is in the fusible crowds"), "{message}");
 }

@@ -15,6 +15,7 @@ use std::ops::Range;
 
 use souple_engine::steppers::Stability;
 use souple_engine::{Force, Mass};
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
@@ -326,10 +327,30 @@ fn fusible_of(
         return refuse(Code::OutOfRange, message, "a `reach` up to the range of the crowd");
     }
     let temperature = spec.temperature.as_ref()?;
-    let temperatures: Vec<f64> = masses.map(|place| temperature.evaluate(&place.to_array())).collect();
+    let places: Vec<Vec3> = masses.collect();
+    let temperatures: Vec<f64> = places.iter().map(|place| temperature.evaluate(&place.to_array())).collect();
     if let Some(wrong) = temperatures.iter().find(|kelvins| !(kelvins.is_finite() && **kelvins >= 0.0)) {
         let message = format!("a mass starts at {wrong} K");
         return refuse(Code::NotFinite, message, "temperatures from 0 K");
+    }
+    let at_start = |formula: &Formula, is_well: fn(f64) -> bool| {
+        let values = places.iter().map(|place| formula.evaluate(&[place.x, place.y, place.z, 0.0]));
+        values.into_iter().find(|value| !is_well(*value))
+    };
+    if let Some(wrong) = spec.heating.as_ref().and_then(|heating| at_start(heating, f64::is_finite)) {
+        let message = format!("a mass is heated by {wrong} W at the start");
+        return refuse(Code::NotFinite, message, "a finite `heating`");
+    }
+    if let Some([exchange, ambient]) = &spec.exchange {
+        // heat that flows from cold to warm runs away
+        if let Some(wrong) = at_start(exchange, |value| value.is_finite() && value >= 0.0) {
+            let message = format!("a mass exchanges {wrong} W/K with what is around it at the start");
+            return refuse(Code::OutOfRange, message, "an `exchange` from 0 W/K");
+        }
+        if let Some(wrong) = at_start(ambient, |value| value.is_finite() && value >= 0.0) {
+            let message = format!("what is around a mass has {wrong} K at the start");
+            return refuse(Code::OutOfRange, message, "an `ambient` from 0 K");
+        }
     }
     Some(Fusible {
         capacity: spec.capacity,
@@ -345,7 +366,8 @@ fn fusible_of(
     })
 }
 
-/// Warns of masses that exchange more heat in a step than they hold: of temperatures that would swing.
+/// Warns of masses that exchange more heat in a step than they hold, with the neighbours and the exchange of the start: of temperatures that
+/// would swing. Refuses masses of two fusible crowds, each of which would give them a temperature.
 pub fn warn_of_heat(draft: &mut Draft) {
     let mut warnings = Vec::new();
     for body in draft.bodies.iter().filter(|body| body.spec.network.is_some()) {
@@ -359,8 +381,21 @@ pub fn warn_of_heat(draft: &mut Draft) {
                 .all(|rows| body.rows.start <= rows.start as usize && rows.end as usize <= body.rows.end)
         };
         let forces = draft.systems[body.system].forces.iter();
+        let mut before: Vec<&Crowd> = Vec::new();
         for crowd in forces.filter_map(|force| force.as_any().downcast_ref::<Crowd>()).filter(is_here) {
             let Some((share, row)) = crowd.heat_share(&positions) else { continue };
+            let both = before.iter().find_map(|other| Some((other, shared(crowd.rows(), other.rows())?)));
+            if let Some((other, row)) = both {
+                let message = format!(
+                    "mass {} of network `{}` is in the fusible crowds `{}` and `{}`",
+                    row as usize - body.rows.start,
+                    body.spec.name,
+                    other.name(),
+                    crowd.name(),
+                );
+                draft.log.add(Code::Conflict, &body.spec.site, message, "one temperature of each mass");
+            }
+            before.push(crowd);
             if share > 1.0 {
                 warnings.push(format!(
                     "{}: in a step mass {} of network `{}` exchanges {share:.3} of the heat that it holds: temperatures may swing; \
@@ -373,6 +408,12 @@ pub fn warn_of_heat(draft: &mut Draft) {
         }
     }
     draft.warnings.extend(warnings);
+}
+
+/// The first row that is in both.
+fn shared(rows: [Range<u32>; 2], others: [Range<u32>; 2]) -> Option<u32> {
+    let pairs = rows.iter().flat_map(|a| others.iter().map(move |b| a.start.max(b.start)..a.end.min(b.end)));
+    pairs.filter(|both| !both.is_empty()).map(|both| both.start).min()
 }
 
 /// The contours of each body.

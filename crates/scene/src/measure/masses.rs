@@ -122,10 +122,16 @@ fn of_fusible(quantity: MassesQuantity, part: &Part, world: &mut World) -> f64 {
 
 /// Of the topmost places in columns along `up`; no number of none.
 fn relief(places: &[Vec3], width: f64, up: Vec3) -> f64 {
-    let mut tops: HashMap<[i64; 3], f64> = HashMap::new();
+    let mut tops: HashMap<[i64; 2], f64> = HashMap::new();
+    // two axes across, the first across `up` and the axis of space that is farthest from it
+    let along = up.to_array().map(f64::abs);
+    let least = (0..3).min_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
+    let first = [Vec3::X, Vec3::Y, Vec3::Z][least];
+    let first = (first - up * up.dot(first)).try_normalised().unwrap_or(Vec3::ZERO);
+    let axes = [first, up.cross(first)];
     for place in places {
         let height = place.dot(up);
-        let column = (*place - up * height).to_array().map(|x| (x / width).floor() as i64);
+        let column = axes.map(|axis| (place.dot(axis) / width).floor() as i64);
         let top = tops.entry(column).or_insert(height);
         *top = top.max(height);
     }

@@ -447,12 +447,18 @@ impl Network {
     }
 
     fn check_count(&self, reader: &Reader) {
-        let count = self.mass_count();
-        if count as f64 > MASSES_MAX {
-            let message = format!("the network has {count} masses");
-            let expected = format!("at most {MASSES_MAX:.0e} masses in all groups together");
+        if let Some((message, expected)) = self.too_many() {
             reader.log().add(Code::TooLarge, &reader.site_of("masses"), message, expected);
         }
+    }
+
+    /// What is said of more masses than a network may have, and what would be taken; masses of files and fillings count once they have places.
+    pub fn too_many(&self) -> Option<(String, String)> {
+        let count = self.mass_count();
+        (count as f64 > MASSES_MAX).then(|| {
+            let expected = format!("at most {MASSES_MAX:.0e} masses in all groups together");
+            (format!("the network has {count} masses"), expected)
+        })
     }
 
     fn check_contours(&self, reader: &Reader) {

@@ -18,7 +18,7 @@ const WAX: Case = Case {
     capabilities: &["JIM-97"],
     scene: "wax",
     reading: Reading::last("bonds"),
-    source: "specification §6.3, PA-THERM: edges above melting are removed; below it bonds come back between what is near",
+    source: "edges above melting are removed (specification §6.3, PA-THERM); that bonds come back below it, between what is near, is the project's own: physical consistency",
     ..OSCILLATOR
 };
 

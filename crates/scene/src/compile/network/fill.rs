@@ -7,7 +7,7 @@ use souple_models::network::Filling;
 
 use super::super::{Draft, contact, shape};
 use crate::diagnostic::Code;
-use crate::spec::network::{FillSpec, Places};
+use crate::spec::network::{FillSpec, Network, Places};
 
 /// Fills what groups of masses are to fill, and reads what they are to stand at; what cannot be goes to the log.
 pub fn fill_all(draft: &mut Draft) {
@@ -43,6 +43,11 @@ pub fn fill_all(draft: &mut Draft) {
             Err(error) => {
                 draft.log.add(Code::OutOfRange, &fill.site, error.to_string(), "another `spacing`, or `box`");
             }
+        }
+    }
+    for body in &draft.spec.bodies {
+        if let Some((message, expected)) = body.network.as_ref().and_then(Network::too_many) {
+            draft.log.add(Code::TooLarge, &body.site, message, expected);
         }
     }
     draft.warnings.extend(warnings);
