@@ -64,6 +64,8 @@ pub struct Monitor {
     work: f64,
     worked: f64,
     power: f64,
+    /// The greatest power so far [W].
+    peak: f64,
     pub grown: Option<Grown>,
 }
 
@@ -108,6 +110,7 @@ impl History {
 
 impl Monitor {
     pub fn new(spec: MonitorSpec, world: &mut World) -> Self {
+        let power = power_from_outside(world);
         let mut monitor = Self {
             spec,
             lowest: f64::INFINITY,
@@ -116,7 +119,8 @@ impl Monitor {
             exchanged: History::new(),
             work: 0.0,
             worked: 0.0,
-            power: power_from_outside(world),
+            power,
+            peak: power.abs(),
             grown: None,
         };
         monitor.take(world);
@@ -141,7 +145,9 @@ impl Monitor {
         self.turned += (stored - self.stored.replace(stored).unwrap_or(stored)).abs();
         self.exchanged.push(energy.kinetic.max(self.turned));
         let summed = energy.kinetic + stored.abs() + dissipated.abs() + made.abs() + self.work.abs();
-        let reference = self.exchanged.half().max(self.worked).max(ROUNDING * summed);
+        // a start is as wrong later on as at the beginning, by the work of a period
+        let begun = self.peak * FIRST as f64 * world.model().period;
+        let reference = self.exchanged.half().max(self.worked + begun).max(ROUNDING * summed);
         (balance - self.lowest, reference)
     }
 
@@ -154,6 +160,7 @@ impl Monitor {
         let done = 0.5 * (self.power + power) * world.model().period;
         self.work += done;
         self.worked += done.abs();
+        self.peak = self.peak.max(power.abs());
         self.power = power;
         let (excess, reference) = self.take(world);
         // what is no number is not below it either
