@@ -33,6 +33,16 @@ pub enum Pace {
 }
 
 impl Division {
+    /// A step whose points have their own rates, by their stiffness alone, and keep their velocities.
+    pub const fn new(timestep: f64, halvings: u32) -> Self {
+        Self { timestep, halvings, filter: Filter::None, pace: Pace::Own, velocity_jump: f64::INFINITY }
+    }
+
+    /// Whether elastic forces are asked before the step how fast they change velocities.
+    pub fn asks_first(&self) -> bool {
+        self.velocity_jump < f64::INFINITY
+    }
+
     pub fn ticks(&self) -> u32 {
         1 << self.halvings
     }
@@ -86,6 +96,15 @@ pub enum Push {
     Outer,
 }
 
+/// Elastic forces that a step evaluates.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Evaluations {
+    /// Once, before its first tick.
+    pub first: usize,
+    /// At each date of a rate, by rate.
+    pub of_rate: Vec<usize>,
+}
+
 /// How many points do what.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Census {
@@ -111,9 +130,7 @@ pub struct Neighbours {
     /// Of inner particles, those with 26 others of their level around them; 0 where there is none.
     pub fewest: usize,
     pub most: usize,
-    /// Pairs that lie side by side in space and know each other, counted from both sides.
-    pub listed: usize,
-    /// Those that do not.
+    /// Pairs that lie side by side in space and do not know each other, counted from both sides.
     pub unlisted: usize,
 }
 
@@ -171,8 +188,8 @@ pub trait Levels: Send + Sync {
     /// Elastic forces of samples that a step so divided evaluates, by the last lists made.
     fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize;
 
-    /// Elastic forces evaluated at each date of a rate, by rate: what a step so divided has to do with this memory.
-    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize>;
+    /// What a step so divided has to do with this memory.
+    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations;
 
     /// Who does what, by the memory.
     fn census(&self, memory: &[f64]) -> Census;

@@ -8,7 +8,11 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
-use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, Stepper, System, UnknownKind, World};
+use souple_engine::levels::{Division, Levels};
+use souple_engine::{
+    Constraint, Force, Kinematics, Mass, Model, Rows, State, Stepper, System, UnknownKind, World,
+};
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_models::contact::{
@@ -18,7 +22,10 @@ use souple_models::loads::{
     Attachments, Combination, Drag, FormulaVector, Gravity, GroundSpring, GroundSprings, Link, MassDamping,
     PointLoad, RigidMotion,
 };
-use souple_models::materials;
+use souple_models::materials::{self, Material};
+use souple_models::multiresolution::{
+    Choice, Coupling, LevelsDescription, LevelsForce, Loops, PLACE_VARIABLES, Stiffness,
+};
 use souple_models::solids::{
     RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
 };
@@ -80,6 +87,15 @@ fn mesh(cells: [f64; 3], element: &'static str) -> Mesh {
     souple_mesh::generate("bar", values).unwrap()
 }
 
+fn rubber() -> Material {
+    let entry = materials::TABLE.find("neo_hookean").unwrap();
+    let values = Values::new()
+        .with("youngs_modulus", Value::Number(2e4))
+        .with("poissons_ratio", Value::Number(0.3))
+        .with("density", Value::Number(1000.0));
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
 /// Which mass rows have.
 #[derive(Clone, Copy, PartialEq)]
 enum Inertia {
@@ -98,12 +114,7 @@ struct Block {
 impl Block {
     fn system(&self, stepper: Box<dyn Stepper>) -> (System, Vec<Vec3>) {
         let mesh = mesh([6.0, 3.0, 3.0], self.element);
-        let entry = materials::TABLE.find("neo_hookean").unwrap();
-        let values = Values::new()
-            .with("youngs_modulus", Value::Number(2e4))
-            .with("poissons_ratio", Value::Number(0.3))
-            .with("density", Value::Number(1000.0));
-        let materials = [(entry.build)(&entry.values(values).unwrap()).unwrap()];
+        let materials = [rubber()];
         let material_of_cell = vec![0; mesh.cell_count()];
         let description = |name: &str| SolidDescription {
             name: name.into(),
@@ -244,6 +255,39 @@ fn static_steps() {
         start((system, q), 0.1)
     };
     assert_eq!(allocations(make, 3, 5), 0);
+}
+
+/// What points of levels are asked before a step.
+#[test]
+fn velocities_are_asked() {
+    let mut mesh = mesh([4.0, 3.0, 3.0], "tet4");
+    mesh.validate().unwrap();
+    let force = LevelsForce::new(LevelsDescription {
+        name: "body.material".to_owned(),
+        meshes: &[&mesh],
+        first_row: 0,
+        materials: &[rubber()],
+        material_of_cell: &vec![0; mesh.cell_count()],
+        coupling: Coupling::Transpose,
+        loops: Loops::Activated,
+        stiffness: Stiffness::Own,
+        choice: Choice::Fixed(Formula::compile("0", &PLACE_VARIABLES).unwrap()),
+        viscosity: 0.0,
+        mass_damping: 0.0,
+        budget: None,
+        cuts: Vec::new(),
+    })
+    .unwrap();
+    let division = Division { velocity_jump: 1.0, ..Division::new(1e-3, 3) };
+    let positions = mesh.points.iter().map(|x| *x * 1.1).collect();
+    let mut rows = Rows { positions, velocities: vec![Vec3::ZERO; mesh.points.len()], time: 0.0 };
+    let (mut memory, mut scratch) = (vec![0.0; force.memory_len()], force.new_scratch());
+    for _ in 0..2 {
+        force.adapt(&division, &mut rows, &mut memory, &mut scratch);
+    }
+    let before = COUNT.get();
+    force.adapt(&division, &mut rows, &mut memory, &mut scratch);
+    assert_eq!(COUNT.get(), before);
 }
 
 const LAW: ContactLaw = ContactLaw {

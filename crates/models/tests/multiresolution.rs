@@ -1,6 +1,6 @@
 //! Bodies of several meshes: what follows follows exactly, nothing is lost between levels, and steps keep their laws.
 
-use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels, Pace};
+use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels};
 use souple_engine::steppers::{Schedule, Staggered};
 use souple_engine::{
     Constraint, Force, Kinematics, Mass, Model, Rows, Scratch, State, System, UnknownKind, World,
@@ -87,13 +87,7 @@ struct Alone {
     rows: Rows,
 }
 
-const DIVISION: Division = Division {
-    timestep: 1e-3,
-    halvings: 2,
-    filter: Filter::None,
-    pace: Pace::Own,
-    velocity_jump: f64::INFINITY,
-};
+const DIVISION: Division = Division::new(1e-3, 2);
 
 impl Alone {
     fn new(force: LevelsForce) -> Self {
@@ -406,6 +400,26 @@ fn budgets_are_kept() {
         let spent = spent(Some(part * most));
         assert!(spent <= part * most && spent > 0.3 * part * most, "{spent} of {}", part * most);
     }
+}
+
+/// What points are asked before a step is counted with it: each sample at work once.
+#[test]
+fn asking_first_is_counted() {
+    let meshes = [cube(2.0), cube(4.0)];
+    let force = body_of(&meshes, Coupling::Transpose, fixed("1"), Stiffness::Own);
+    let mut body = Alone::new(force);
+    let mut spent = |division: &Division| {
+        body.force.adapt(division, &mut body.rows, &mut body.memory, &mut body.scratch);
+        let workload = body.force.workload(division, &body.memory);
+        (body.force.evaluations(division, &body.scratch), workload)
+    };
+    let (plain, of_plain) = spent(&DIVISION);
+    // so much that nothing changes by more
+    let (asked, of_asked) = spent(&Division { velocity_jump: 1e9, ..DIVISION });
+    let samples = 6 * 4_usize.pow(3);
+    assert_eq!(asked, plain + samples);
+    assert_eq!((of_plain.first, of_asked.first), (0, samples));
+    assert_eq!(of_asked.of_rate, of_plain.of_rate);
 }
 
 /// Linear tetrahedra are too stiff by about the square of their size: the share of moduli that makes them yield as the finest falls

@@ -1,7 +1,7 @@
 //! Particles of an octree: who is at work, what divides, what is kept.
 #![allow(non_snake_case)]
 
-use souple_engine::levels::{Census, Division, Filter, Levels, Pace};
+use souple_engine::levels::{Census, Division, Levels};
 use souple_engine::{Force, Rows};
 use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
@@ -40,13 +40,7 @@ fn fixed(formula: &str) -> OctreeChoice {
     OctreeChoice::Fixed(Formula::compile(formula, &PLACE_VARIABLES).unwrap())
 }
 
-const DIVISION: Division = Division {
-    timestep: 1e-3,
-    halvings: 6,
-    filter: Filter::None,
-    pace: Pace::Own,
-    velocity_jump: f64::INFINITY,
-};
+const DIVISION: Division = Division::new(1e-3, 6);
 
 /// A body with rows and memory.
 struct Body {
@@ -211,13 +205,7 @@ fn hierarchies_cost_a_seventh_more() {
         let operators = OctreeOperators::Strong(Operators::Legacy);
         let mut body = Body::new(force(tree([32, 8, 8], 4), operators, variant, choice));
         let census = body.adapt();
-        let division = Division {
-            timestep: 1e-6,
-            halvings: 0,
-            filter: Filter::None,
-            pace: Pace::Own,
-            velocity_jump: f64::INFINITY,
-        };
+        let division = Division::new(1e-6, 0);
         body.force.adapt(&division, &mut body.rows, &mut body.memory, &mut body.scratch);
         (body.force.evaluations(&division, &body.scratch), census)
     };

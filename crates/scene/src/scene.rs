@@ -260,8 +260,8 @@ pub(crate) fn workload(world: &World, system: usize, force: &str) -> Option<Work
     let (index, levels) = levels(world, system, force)?;
     let (division, schedule) = of.stepper.ticks(world.model().timestep(system))?;
     let memory = of.memory_ranges()[index].clone();
-    let of_rate = levels.workload(&division, &world.state().systems[system].memory[memory]);
-    Some(Workload { of_rate, schedule })
+    let evaluations = levels.workload(&division, &world.state().systems[system].memory[memory]);
+    Some(Workload { evaluations, schedule })
 }
 
 /// The meshes of the body of a force, and its number in its system; `None` where it has one mesh.

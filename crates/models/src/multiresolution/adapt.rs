@@ -144,22 +144,23 @@ impl LevelsForce {
 
     /// The least rate of each active point at which its velocity changes by no more than a division allows, as it is accelerated now.
     pub(super) fn urge(&self, division: &Division, rows: &Rows, memory: &mut [f64], work: &mut Work) {
-        if division.velocity_jump == f64::INFINITY {
+        if !division.asks_first() {
             return;
         }
-        let mut forces = vec![Vec3::ZERO; self.rows().end];
         let values = Values { positions: &rows.positions[self.rows()], variation: &[] };
-        self.add_all(Answer::Stress, values, 1.0, work, &mut forces);
+        let (mut law_memory, mut forces) = (std::mem::take(&mut work.stress), std::mem::take(&mut work.sums));
+        self.sum_all(Answer::Stress, values, work, &mut law_memory, &mut forces);
         let urges = self.urges();
         memory[urges..].fill(0.0);
         for point in &work.active {
             let point = *point as usize;
-            let change = forces[self.first_row + point].length() / work.masses[point] * division.timestep;
+            let change = forces[point].length() / work.masses[point] * division.timestep;
             let rate = (0..division.halvings)
                 .find(|rate| change <= division.velocity_jump * f64::from(division.dates(*rate)))
                 .unwrap_or(division.halvings);
             memory[urges + point] = f64::from(rate);
         }
+        (work.stress, work.sums) = (law_memory, forces);
         work.refresh(self, memory);
     }
 
@@ -184,6 +185,12 @@ impl Work {
     /// Stresses that a step so divided evaluates.
     pub fn evaluations(&self, division: &Division) -> usize {
         let samples = |rate: usize| self.due[rate].iter().flat_map(|due| due.slots()).count();
-        (0..=division.halvings).map(|rate| samples(rate as usize) * division.dates(rate) as usize).sum()
+        let at_dates = |rate: u32| samples(rate as usize) * division.dates(rate) as usize;
+        self.first_evaluations(division) + (0..=division.halvings).map(at_dates).sum::<usize>()
+    }
+
+    /// Those of them by which points choose their rates.
+    pub fn first_evaluations(&self, division: &Division) -> usize {
+        if division.asks_first() { self.acting.iter().filter(|volume| **volume > 0.0).count() } else { 0 }
     }
 }

@@ -61,7 +61,7 @@ impl LawMemory {
         &mut self,
         (hierarchy, matter): (&Hierarchy, &Matter),
         answer: Answer,
-        due: &[Due],
+        due: impl IntoIterator<Item = Due>,
         values: Values,
         mut visit: impl FnMut(usize, &Sample, &Tet, u8, &Mat3),
     ) {

@@ -1,7 +1,7 @@
 //! What a step goes through: made anew when other points become active, or when steps are divided otherwise.
 
 use souple_engine::levels::{Division, Filter};
-use souple_math::Mat3;
+use souple_math::{Mat3, Vec3};
 
 use super::elastic::{ALL_CORNERS, Due, LawMemory};
 use super::links::Loops;
@@ -55,6 +55,8 @@ pub struct Work {
     /// How fine all points were before.
     pub were: Vec<u8>,
     pub stress: LawMemory,
+    /// Of each point: what all samples together push it with.
+    pub sums: Vec<Vec3>,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
     rate_of_slot: Vec<u8>,
@@ -91,6 +93,7 @@ impl Work {
             before: Vec::new(),
             were: Vec::new(),
             stress: LawMemory::new(&force.matter, Answer::Stress),
+            sums: Vec::new(),
             stiffness: Vec::new(),
             damping: Vec::new(),
             rate_of_slot: Vec::new(),
@@ -417,6 +420,7 @@ impl Work {
             + 4 * points.map(Vec::capacity).sum::<usize>()
             + size_of::<Due>() * self.due.iter().map(Vec::capacity).sum::<usize>()
             + size_of::<Mat3>() * self.brakes.capacity()
+            + size_of::<Vec3>() * self.sums.capacity()
             + 16 * self.unwanted.capacity()
             + self.following.bytes()
             + self.stress.bytes()

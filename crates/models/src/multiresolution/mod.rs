@@ -108,7 +108,7 @@ pub struct LevelsDescription<'a> {
     pub mass_damping: f64,
     /// Stresses that a step may evaluate.
     pub budget: Option<f64>,
-    /// In the order of their dates.
+    /// In any order: they are made at their dates.
     pub cuts: Vec<Cut>,
 }
 
@@ -315,19 +315,34 @@ impl LevelsForce {
 
     /// Sums of stresses, or of their changes, over all samples that are at work, on the rows of active points.
     fn add_all(&self, answer: Answer, values: Values, scale: f64, work: &mut Work, out: &mut [Vec3]) {
-        let due: Vec<Due> = self.all_due(&work.acting).collect();
-        let mut sums = vec![Vec3::ZERO; self.hierarchy.point_count()];
         let mut memory = LawMemory::new(&self.matter, answer);
-        memory.ask((&self.hierarchy, &self.matter), answer, &due, values, |slot, _, tet, _, stress| {
+        let mut sums = std::mem::take(&mut work.sums);
+        self.sum_all(answer, values, work, &mut memory, &mut sums);
+        for point in &work.active {
+            out[self.first_row + *point as usize] += sums[*point as usize] * scale;
+        }
+        work.sums = sums;
+    }
+
+    /// The same of each point by its number; those that follow are left with nothing where they give back.
+    fn sum_all(
+        &self,
+        answer: Answer,
+        values: Values,
+        work: &Work,
+        memory: &mut LawMemory,
+        sums: &mut Vec<Vec3>,
+    ) {
+        sums.clear();
+        sums.resize(self.hierarchy.point_count(), Vec3::ZERO);
+        let parts = (&self.hierarchy, &self.matter);
+        memory.ask(parts, answer, self.all_due(&work.acting), values, |slot, _, tet, _, stress| {
             for (corner, gradient) in tet.corners.iter().zip(tet.gradients) {
-                sums[*corner as usize] -= *stress * gradient * (work.acting[slot] * scale);
+                sums[*corner as usize] -= *stress * gradient * work.acting[slot];
             }
         });
         if self.coupling == Coupling::Transpose {
-            self.return_all(work, Followers::All, &mut sums);
-        }
-        for point in &work.active {
-            out[self.first_row + *point as usize] += sums[*point as usize];
+            self.return_all(work, Followers::All, sums);
         }
     }
 }
@@ -365,14 +380,13 @@ impl Force for LevelsForce {
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
         let work = self.work(scratch);
         work.refresh(self, at.memory);
-        let due: Vec<Due> = self.all_due(&work.shares).collect();
         let values = Values { positions: self.own(at.positions), variation: &[] };
         let mut stored = 0.0;
         let mut memory = LawMemory::new(&self.matter, Answer::Energy);
         memory.ask(
             (&self.hierarchy, &self.matter),
             Answer::Energy,
-            &due,
+            self.all_due(&work.shares),
             values,
             |slot, _, _, _, density| {
                 stored += work.shares[slot] * density.columns[0].x;

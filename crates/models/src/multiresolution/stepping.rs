@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use souple_engine::levels::{Census, Division, Filter, Followers, Kinematic, Levels, Push};
+use souple_engine::levels::{Census, Division, Evaluations, Filter, Followers, Kinematic, Levels, Push};
 use souple_engine::{Rows, Scratch};
 use souple_math::Vec3;
 
@@ -162,19 +162,25 @@ impl Levels for LevelsForce {
         let interval = division.interval(rate);
         let parts = (&self.hierarchy, &self.matter);
         let (due, acting) = (&work.due[rate as usize], &work.acting);
-        work.stress.ask(parts, Answer::Stress, due, values, |slot, _, tet, corners, stress| {
-            let mut stress = *stress;
-            if self.viscosity > 0.0 {
-                // P += F 2 η sym(Fᵀ Ḟ)
-                let (F, rate) = (tet.gradient(values.positions), tet.gradient(velocities));
-                stress += F * F.transpose_mul(&rate).symmetric_part() * (2.0 * self.viscosity);
-            }
-            for (index, (corner, gradient)) in tet.corners.iter().zip(tet.gradients).enumerate() {
-                if corners & (1 << index) != 0 {
-                    impulses[*corner as usize] -= stress * gradient * (acting[slot] * interval);
+        work.stress.ask(
+            parts,
+            Answer::Stress,
+            due.iter().copied(),
+            values,
+            |slot, _, tet, corners, stress| {
+                let mut stress = *stress;
+                if self.viscosity > 0.0 {
+                    // P += F 2 η sym(Fᵀ Ḟ)
+                    let (F, rate) = (tet.gradient(values.positions), tet.gradient(velocities));
+                    stress += F * F.transpose_mul(&rate).symmetric_part() * (2.0 * self.viscosity);
                 }
-            }
-        });
+                for (index, (corner, gradient)) in tet.corners.iter().zip(tet.gradients).enumerate() {
+                    if corners & (1 << index) != 0 {
+                        impulses[*corner as usize] -= stress * gradient * (acting[slot] * interval);
+                    }
+                }
+            },
+        );
         if self.coupling == Coupling::Transpose {
             self.return_all(work, Followers::Ghosts, impulses);
         }
@@ -213,11 +219,12 @@ impl Levels for LevelsForce {
         read(scratch).evaluations(division)
     }
 
-    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize> {
+    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations {
         let mut work = Work::new(self);
         work.refresh(self, memory);
         work.divide(self, division);
-        work.due.iter().map(|due| due.iter().flat_map(|due| due.slots()).count()).collect()
+        let of_rate = work.due.iter().map(|due| due.iter().flat_map(|due| due.slots()).count()).collect();
+        Evaluations { first: work.first_evaluations(division), of_rate }
     }
 
     fn census(&self, memory: &[f64]) -> Census {

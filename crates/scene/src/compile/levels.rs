@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use souple_engine::Force;
-use souple_engine::levels::{Division, Filter, Pace};
+use souple_engine::levels::{Division, Pace};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::Mesh;
@@ -215,16 +215,14 @@ pub fn warn_of_budgets(draft: &mut Draft) {
         let name = solid_name(&body.spec.name);
         let force = forces.iter().find(|force| force.name() == name)?;
         let force = force.as_any().downcast_ref::<LevelsForce>()?;
-        let division = Division {
-            timestep: draft.spec.world.period / f64::from(system.steps_per_period),
-            halvings: halvings as u32,
-            filter: Filter::None,
-            pace: match stepper.values.text("schedule") {
-                "together" => Pace::Together,
-                _ => Pace::Own,
-            },
-            velocity_jump: f64::INFINITY,
-        };
+        let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+        let mut division = Division::new(timestep, halvings as u32);
+        if stepper.values.text("schedule") == "together" {
+            division.pace = Pace::Together;
+        }
+        if stepper.values.number("velocity_jump") > 0.0 {
+            division.velocity_jump = stepper.values.number("velocity_jump");
+        }
         let least = force.least_evaluations(&division);
         (budget < least as f64).then(|| {
             format!(

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 
-use souple_engine::levels::{Division, Filter, Pace};
+use souple_engine::levels::Division;
 use souple_engine::{FieldState, Force, System};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
@@ -199,13 +199,7 @@ impl Rows for Start {
 fn active_of(force: &dyn Force, positions: &[Vec3]) -> Option<Vec<u32>> {
     let levels = force.levels()?;
     // how the step is divided among points says nothing of which they are, but where a budget of evaluations is short
-    let division = Division {
-        timestep: 1.0,
-        halvings: 0,
-        filter: Filter::None,
-        pace: Pace::Own,
-        velocity_jump: f64::INFINITY,
-    };
+    let division = Division::new(1.0, 0);
     let velocities = vec![Vec3::ZERO; positions.len()];
     let mut rows = souple_engine::Rows { positions: positions.to_vec(), velocities, time: 0.0 };
     let mut memory = vec![0.0; force.memory_len()];

@@ -1,6 +1,6 @@
 //! Who does what in a body with levels, and what it costs.
 
-use souple_engine::levels::Neighbours;
+use souple_engine::levels::{Evaluations, Neighbours};
 use souple_engine::steppers::Schedule;
 use souple_engine::{Census, World};
 
@@ -27,7 +27,7 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
         LevelsQuantity::Grading => census().map_or(0.0, |census| f64::from(census.grading)),
         LevelsQuantity::FewestNeighbours => neighbours(census()).fewest as f64,
         LevelsQuantity::MostNeighbours => neighbours(census()).most as f64,
-        LevelsQuantity::ListedNeighbours => neighbours(census()).listed as f64,
+        LevelsQuantity::UnlistedNeighbours => neighbours(census()).unlisted as f64,
         LevelsQuantity::Evaluations => workload(world, part.system, &part.force)
             .map_or(0.0, |load| load.by_tick().iter().sum::<usize>() as f64),
         LevelsQuantity::Peak => workload(world, part.system, &part.force).map_or(0.0, |load| {
@@ -44,17 +44,20 @@ fn neighbours(census: Option<Census>) -> Neighbours {
 
 /// What a step does with the points as they are.
 pub struct Workload {
-    /// Forces at each date, by rate.
-    pub of_rate: Vec<usize>,
+    pub evaluations: Evaluations,
     pub schedule: Schedule,
 }
 
 impl Workload {
     /// Forces of each tick of a step.
     fn by_tick(&self) -> Vec<usize> {
-        let halvings = self.of_rate.len().saturating_sub(1) as u32;
-        let of = |tick| self.schedule.due(tick, halvings).map(|rate| self.of_rate[rate as usize]).sum();
-        (0..1_u32 << halvings).map(of).collect()
+        let Evaluations { first, of_rate } = &self.evaluations;
+        let halvings = of_rate.len().saturating_sub(1) as u32;
+        let at = |tick| {
+            let begins = if tick == 0 { *first } else { 0 };
+            begins + self.schedule.due(tick, halvings).map(|rate| of_rate[rate as usize]).sum::<usize>()
+        };
+        (0..1_u32 << halvings).map(at).collect()
     }
 }
 

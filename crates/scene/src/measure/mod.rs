@@ -66,7 +66,6 @@ enum Target {
     Hand(HandQuantity, HandInfo),
     Bone(BoneQuantity, BonePart),
     Contour(ContourQuantity, usize, [ContourInfo; 2]),
-    /// With the distance within which masses are neighbours [m].
     Masses(Box<Multitude>),
 }
 
@@ -426,15 +425,9 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
         draft.log.add(Code::Conflict, &probe.site, message, "a body whose `levels` have a `dress`");
         return None;
     }
-    let is_of_particles = matches!(
-        probe.quantity.build.subject,
-        Subject::Levels(
-            LevelsQuantity::FewestNeighbours
-                | LevelsQuantity::MostNeighbours
-                | LevelsQuantity::ListedNeighbours
-        )
-    );
-    if is_of_particles && !body.spec.octree.as_ref().is_some_and(OctreeSpec::is_adaptive) {
+    if probe.quantity.build.is_of_particles()
+        && !body.spec.octree.as_ref().is_some_and(OctreeSpec::is_adaptive)
+    {
         let message =
             format!("body `{}` is no octree whose particles see finer and coarser ones", body.spec.name);
         draft.log.add(

@@ -113,7 +113,7 @@ pub enum LevelsQuantity {
     Grading,
     FewestNeighbours,
     MostNeighbours,
-    ListedNeighbours,
+    UnlistedNeighbours,
     Nearness,
 }
 
@@ -219,6 +219,12 @@ impl Quantity {
                     | MassesQuantity::Relief
             )
         )
+    }
+
+    /// Whether it is of octrees whose particles see finer and coarser ones.
+    pub fn is_of_particles(&self) -> bool {
+        use LevelsQuantity::{FewestNeighbours, MostNeighbours, UnlistedNeighbours};
+        matches!(self.subject, Subject::Levels(FewestNeighbours | MostNeighbours | UnlistedNeighbours))
     }
 
     /// Whether it is of bodies whose elements change their law.
@@ -669,10 +675,10 @@ const ENTRIES: &[&QuantityEntry] = &[
         levels("", LevelsQuantity::MostNeighbours),
     ),
     &entry(
-        "levels.listed_neighbours",
-        "pairs of active particles of an octree that lie side by side and know each other, counted from both sides",
+        "levels.unlisted_neighbours",
+        "pairs of active particles of an octree that lie side by side and do not know each other, counted from both sides: none",
         LEVELS,
-        levels("", LevelsQuantity::ListedNeighbours),
+        levels("", LevelsQuantity::UnlistedNeighbours),
     ),
     &entry(
         "levels.nearness",

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use souple_engine::levels::{Census, Division, Followers, Kinematic, Levels, Neighbours, Push};
+use souple_engine::levels::{Census, Division, Evaluations, Followers, Kinematic, Levels, Neighbours, Push};
 use souple_engine::{Rows, Scratch};
 use souple_math::Vec3;
 
@@ -208,11 +208,11 @@ impl Levels for OctreeForce {
             .sum()
     }
 
-    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize> {
+    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations {
         let mut work = Work::new(&self.tree);
         work.refresh(self, memory);
         work.divide(self, division);
-        work.due.iter().map(Vec::len).collect()
+        Evaluations { first: 0, of_rate: work.due.iter().map(Vec::len).collect() }
     }
 
     fn census(&self, memory: &[f64]) -> Census {
@@ -271,14 +271,12 @@ impl OctreeForce {
         let mut pairs: Vec<[usize; 2]> = self.beside(work).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let is_listed =
-            |[own, other]: &&[usize; 2]| work.active_neighbours(tree, *own).any(|at| at as usize == *other);
-        let listed = pairs.iter().filter(is_listed).count();
+        let is_unlisted =
+            |[own, other]: &&[usize; 2]| work.active_neighbours(tree, *own).all(|at| at as usize != *other);
         Neighbours {
             fewest: counts.iter().copied().min().unwrap_or(0),
             most: counts.iter().copied().max().unwrap_or(0),
-            listed,
-            unlisted: pairs.len() - listed,
+            unlisted: pairs.iter().filter(is_unlisted).count(),
         }
     }
 
