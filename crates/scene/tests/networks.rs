@@ -135,8 +135,14 @@ fn networks_that_no_memory_holds_are_refused() {
     // 5e11 links of 80 bytes
     refused(&links("all = true"), &["needs at least 40000.5 GB", "1000000 masses", "499999500000 links"]);
     refused(&links("reach = 1"), &["links of at most 1 m", "a shorter reach"]);
-    let crowd = "[[networks.n.crowds]]\nlaw = { name = \"ball\", threshold = 1, stiffness = 1 }\n";
-    refused(&format!("{cube}{crowd}"), &["more pairs", "a shorter range"]);
+    let crowd = |law: &str| format!("[[networks.n.crowds]]\nlaw = {{ {law} }}\n");
+    let ball = crowd("name = \"ball\", threshold = 1, stiffness = 1");
+    refused(&format!("{cube}{ball}"), &["more pairs", "a shorter range"]);
+    // who is near whom is all that a crowd tells its law
+    let placed = crowd(
+        "name = \"conditional\", stiffness = 1, states = { free = \"SUP, X1.x, 0.5 -> held\", held = \"CHK, 0\" }",
+    );
+    refused(&format!("{cube}{placed}"), &["asks where the ends are", "or `links`"]);
     refused(&linked(&format!("{SPRING}\nchain = false")), &["`chain = false` joins nothing"]);
     refused(&linked(&format!("{SPRING}\nreach = 1e-300")), &["no masses are joined"]);
 }

@@ -11,7 +11,7 @@ mod crowd_pass;
 pub mod filling;
 pub mod force;
 pub mod friction;
-pub mod fusible;
+mod fusible;
 pub mod kernel;
 pub mod law;
 pub mod laws;

@@ -19,8 +19,8 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
-    Account, BuildLink, Crowd, CrowdDescription, Friction, Fusible, LinkDescription, LinkKernel, Links,
-    Listing, Making, PAIR_MEMORY, Slide, Span,
+    Account, AsksFor, BuildLink, Crowd, CrowdDescription, Friction, Fusible, LinkDescription, LinkKernel,
+    Links, Listing, Making, PAIR_MEMORY, Slide, Span,
 };
 
 use super::bodies::Placed;
@@ -260,6 +260,12 @@ fn crowd(
     draft: &Draft,
 ) -> Option<Crowd> {
     let law = law(spec.law.as_ref(), timestep, draft)?;
+    if law.asks_for() != AsksFor::default() {
+        let message =
+            "a condition asks where the ends are, and pairs of a crowd know how far apart they are alone";
+        draft.log.add(Code::Conflict, &spec.site, message, "conditions on `D`, `V` and the like, or `links`");
+        return None;
+    }
     // a bond is one number more
     let most = PAIR_MEMORY - usize::from(spec.fusible.is_some());
     if law.memory_len() > most {
