@@ -247,9 +247,9 @@ fn govern(session: &mut Session, budgets: &mut [Budget], load: f64) -> u64 {
 mod tests {
     use super::*;
 
-    /// Ten minutes of a given clock (V-36): a body wants a fifth more than the machine can do in a period, and once a minute the
-    /// machine is held up for two fifths of one. The budget comes down to a load of 95 % and stays, the world is never a frame behind, and
-    /// fewer than one frame in a thousand is late.
+    /// The rule of V-36, not a machine, through ten minutes of a given clock: a body wants a fifth more than can be done in a period, the time
+    /// is in proportion to the budget, and once a minute the machine is held up for two fifths of a period. The budget comes down to a load of
+    /// 95 % and stays, the world is never a frame behind, and fewer than one frame in a thousand is late.
     #[test]
     fn ten_minutes_of_a_given_clock() {
         let (period, steps, most) = (0.01, 60_000_u64, 1.2);

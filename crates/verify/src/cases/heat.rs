@@ -111,7 +111,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::last("top"),
         reference: 0.0275,
         tolerance: Tolerance::AtMost,
-        source: "matter that melts does not keep its shape; the topmost centres began at 0.055 m",
+        source: "matter that melts does not keep its shape; the topmost centres began at 0.055 m, of which what is solid keeps nearly all: a half is ours",
         mutation: "networks.wax.crowds[0].fusible.melting=480",
         ..WAX
     },

@@ -47,8 +47,9 @@ const SWING: Case = Case {
 /// so that whatever the mesh it creeps as `1 - exp(-t/τ)`. At `t = τ`, 0.3 s.
 const CREEP: Case = Case {
     capabilities: &["DEB-4"],
-    tolerance: Tolerance::Relative(0.05),
-    source: "V-27: rates of the levels within 5 % of each other; displacements by the modes of each mesh, by an independent program",
+    // of 1 - exp(-t/τ) at t = τ, 2.5 % of the rate are 2.5 %/(e - 1): any two levels are within 5 %
+    tolerance: Tolerance::Relative(0.0145),
+    source: "V-27: rates of the levels within 5 % of each other; displacements of each mesh by an independent program",
     mutation: "bodies.cube.damping.viscosity=2500",
     ..CUBE
 };
@@ -56,11 +57,14 @@ const CREEP: Case = Case {
 /// [`CREEP`] with a formula of levels and a schedule.
 macro_rules! creep {
     ($fixed:literal, $schedule:literal) => {
+        creep!($fixed, $schedule, "[4, 4, 4]")
+    };
+    ($fixed:literal, $schedule:literal, $cells:literal) => {
         &[
             "world.gravity=[0, 0, -0.0981]",
             "run.duration=\"0.3 s\"",
             concat!(r#"systems.main.stepper={ name = "staggered", halvings = 12, schedule = ""#, $schedule, "\" }"),
-            "bodies.cube.mesh.cells=[4, 4, 4]",
+            concat!("bodies.cube.mesh.cells=", $cells),
             r#"bodies.cube.material={ name = "linear", youngs_modulus = 14000, poissons_ratio = 0, density = 1000 }"#,
             "bodies.cube.damping={ viscosity = 2100 }",
             concat!(
@@ -71,6 +75,9 @@ macro_rules! creep {
         ]
     };
 }
+
+/// Three meshes that each creep as its own equations say to 6e-4 have rates within 0.2 % of each other.
+const TOGETHER: &str = "V-27: rates of three levels within 5 % of each other; M a + C v + K x = f of each mesh by an independent program";
 
 /// A cube of two meshes whose edges are in the ratio of 4 to 5.
 macro_rules! close {
@@ -87,13 +94,15 @@ const LINEAR: &str = r#"bodies.cube.material.name="linear""#;
 const CELLS_5: &str = "bodies.cube.mesh.cells=[5, 5, 5]";
 const LIGHT: &str = "world.gravity=[0, 0, -0.1]";
 const NAIVE: &str = close!(r#"coupling = "one_way", loops = "lagged""#);
-const REMEDIED: &str = close!(r#"coupling = "transpose""#);
+/// The source's remedy, and its coupling.
+const REMEDIED_ONE_WAY: &str = close!(r#"coupling = "one_way", loops = "activated""#);
+const TRANSPOSED: &str = close!(r#"coupling = "transpose""#);
 
 /// How far the edge comes up above where it was let go: not at all but for what beats of other modes than the lowest do.
 const LOOP: Case = Case {
     capabilities: &["DEB-31"],
     reading: Reading::component("edge", 2).taking(Statistic::Max),
-    // a tenth of twice the sag of K_S(5)
+    // a tenth of twice the sag of K_S(5): ours
     reference: 0.1 * 2.0 * 1.320_875_7e-4,
     source: "specification, V-33; sag of K_S(5) under 0.1 m/s² by an independent program",
     ..CUBE
@@ -227,10 +236,10 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "levels_creep_mixed",
-        what: "the same, half of it fine, half coarse: between the two, and 5 % on either side",
+        what: "the same, half of it fine, half coarse: between the two, and what each may be off on either side",
         settings: creep!("if(x < 0.05, 1, 0)", "staggered"),
         reference: -9.198_793e-5,
-        tolerance: Tolerance::Absolute(1.103_174e-5 + 0.05 * 9.198_793e-5),
+        tolerance: Tolerance::Absolute(1.103_174e-5 + 0.0145 * 9.198_793e-5),
         mutation: "bodies.cube.damping.viscosity=4200",
         ..CREEP
     },
@@ -241,7 +250,27 @@ pub(super) const CASES: &[Case] = &[
         reference: -8.095_671_4e-5,
         // of the lowest mode, which is nearly all of it, ω² τ h is 6e-4
         tolerance: Tolerance::Relative(6e-4),
-        source: "the modes of the mesh, by an independent program",
+        source: TOGETHER,
+        mutation: "bodies.cube.damping.viscosity=2110",
+        ..CREEP
+    },
+    Case {
+        id: "levels_creep_together_3",
+        what: "the same with 162 tetrahedra",
+        settings: creep!("1", "together", "[3, 3, 3]"),
+        reference: -9.483_989_698e-5,
+        tolerance: Tolerance::Relative(6e-4),
+        source: TOGETHER,
+        mutation: "bodies.cube.damping.viscosity=2110",
+        ..CREEP
+    },
+    Case {
+        id: "levels_creep_together_4",
+        what: "the same with 384",
+        settings: creep!("1", "together"),
+        reference: -1.030_201_917e-4,
+        tolerance: Tolerance::Relative(6e-4),
+        source: TOGETHER,
         mutation: "bodies.cube.damping.viscosity=2110",
         ..CREEP
     },
@@ -251,13 +280,23 @@ pub(super) const CASES: &[Case] = &[
         settings: &[NAIVE, CELLS_5, LINEAR, LIGHT, UNDAMPED, "run.duration=\"4.5 s\""],
         reference: 10.0 * LOOP.reference,
         tolerance: Tolerance::Above,
-        mutation: REMEDIED,
+        mutation: TRANSPOSED,
         ..LOOP
     },
     Case {
-        id: "levels_loop_remedied",
-        what: "the same coupled by the transpose, the corners of all that carries active: it does not",
-        settings: &[REMEDIED, CELLS_5, LINEAR, LIGHT, UNDAMPED, "run.duration=\"4.5 s\""],
+        id: "levels_loop_remedied_one_way",
+        what: "the same with the source's remedy, the corners of all that carries active: coupled one way it swings up as high nevertheless",
+        settings: &[REMEDIED_ONE_WAY, CELLS_5, LINEAR, LIGHT, UNDAMPED, "run.duration=\"4.5 s\""],
+        reference: 10.0 * LOOP.reference,
+        tolerance: Tolerance::Above,
+        source: "specification, V-33, which has it that nothing grows then; sag of K_S(5) under 0.1 m/s² by an independent program",
+        mutation: TRANSPOSED,
+        ..LOOP
+    },
+    Case {
+        id: "levels_loop_transposed",
+        what: "the same remedy, coupled by the transpose: it does not",
+        settings: &[TRANSPOSED, CELLS_5, LINEAR, LIGHT, UNDAMPED, "run.duration=\"4.5 s\""],
         tolerance: Tolerance::AtMost,
         mutation: NAIVE,
         ..LOOP
@@ -288,8 +327,8 @@ pub(super) const CASES: &[Case] = &[
             "bodies.block.damping={ rayleigh_mass = 60 }",
             r#"bodies.block.levels={ coarser = [{ mesh = { generate = "bar", size = [0.1, 0.05, 0.05], cells = [2, 1, 1], element = "tet4" } }], fixed = "if(x < 0.05, 1, 0)" }"#,
         ],
-        // what points pushed at dates of their own quiver
-        tolerance: Tolerance::Relative(5e-4),
+        // ours: points pushed at dates of their own quiver, by 5e-5 of it then
+        tolerance: Tolerance::Relative(2e-4),
         ..SLOPES
     },
     Case {
@@ -320,9 +359,9 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "cut_half_coarse",
-        what: "the same, the coarse mesh at work but beside the cut: at least a quarter lower than the whole bar, fine",
+        what: "the same, the coarse mesh at work but beside the cut: lower than the whole bar, fine",
         settings: half_cut!("0"),
-        reference: -1.25 * 2.495_821_9e-4,
+        reference: -2.495_821_9e-4,
         tolerance: Tolerance::AtMost,
         source: "the whole bar by an independent program; a coarse mesh alone would be stiffer than that, and cut it is not",
         ..CUT

@@ -338,16 +338,6 @@ pub(super) const CASES: &[Case] = &[
         ..LIVER_LISTS
     },
     Case {
-        id: "octree_lists",
-        what: "particles side by side that know each other, half of the cube divided, counted from both sides: all",
-        settings: &[CUBIC, CUBIC_CELLS, r#"bodies.rod.octree.fixed="if(x < 0.05, 1, 0)""#],
-        reading: Reading::last("listed").after(1),
-        // 4 x 8 x 8 fine ones with 10 x 22 x 22 in their blocks of 27, themselves taken off, 2 x 4 x 4 coarse ones alike, and between
-        // them 14 x 14 pairs twice
-        reference: (10 * 22 * 22 - 256 + 4 * 10 * 10 - 32 + 2 * 14 * 14) as f64,
-        ..NEIGHBOURS
-    },
-    Case {
         id: "octree_rod_settles",
         capabilities: &["DEB-12", "DEB-14"],
         what: "how often a particle comes or goes within a second while the rod settles in two, the most: once",

@@ -87,7 +87,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::Derived(Count::TensorForcesOver("law=linear")),
         reference: 2.3,
         tolerance: Tolerance::AtMost,
-        source: "specification, V-01 and V-28: 2.3 and about 2 times, as timed",
+        source: "ours, in operations: V-01 and V-28 have 2.3 and about 2 times of the source's time",
         mutation: "law=ogden",
         ..FREQUENCY
     },

@@ -51,7 +51,8 @@ const HELD_ON_LIVER: Case = Case {
     capabilities: &["DEB-45", "DEB-46"],
     reading: Reading::Ratio { of: "on_liver", to: "force", component: 2 },
     reference: -1.0,
-    tolerance: Tolerance::Absolute(0.02),
+    // ours: the soft organ still gives way by as much as takes 0.005 of it
+    tolerance: Tolerance::Absolute(0.01),
     source: "balance of the ball at rest; 1.4 s and more after it came",
     // it draws back, and touches nothing
     mutation: "hands.right.motion.times=[0, 0.6, 1, 1.4, 1.8]",
@@ -195,7 +196,7 @@ pub(super) const CASES: &[Case] = &[
         // a tick of the device and one of the stepper
         reference: 1e-3 + 10e-3 / 128.0,
         tolerance: Tolerance::Absolute(1e-8),
-        source: "V-42: fresh force age below 2.5 ms",
+        source: "the schedule, in time of the world: nothing waits for more than its next date; V-42's 2.5 ms are on the clock, which no row has",
         mutation: "systems.main.stepper.halvings=8",
         ..LIVER
     },
@@ -207,7 +208,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::last("age").after(50),
         reference: 2e-3,
         tolerance: Tolerance::Absolute(1e-9),
-        source: "V-42: below 2.5 ms",
+        source: "the schedule, as in hand_age_liver",
         mutation: "world.period=\"0.5 ms\"",
         ..LIVER
     },
@@ -227,13 +228,13 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "brutal_tool_locally",
         capabilities: &["DEB-17"],
-        what: "forces that a step evaluates meanwhile, the most: a half of those with the shortest interval everywhere",
+        what: "forces that a step evaluates meanwhile, the most: a tenth of those of all tetrahedra in the shortest intervals",
         settings: BRUTAL,
         reading: Reading::last("evaluations").taking(Statistic::Max),
         // 8 x 8 x 2 boxes of six tetrahedra, 2^8 times a step
-        reference: 0.5 * 768.0 * 256.0,
+        reference: 0.1 * 768.0 * 256.0,
         tolerance: Tolerance::AtMost,
-        source: "specification, DEB-17: steps shrink only locally",
+        source: "specification, DEB-17: steps shrink only locally; a tenth is ours",
         mutation: "systems.main.stepper.velocity_jump=1e-6",
         ..NEEDLE
     },
