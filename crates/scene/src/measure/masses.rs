@@ -32,72 +32,68 @@ impl Multitude {
     }
 
     pub fn measure(&self, world: &mut World) -> f64 {
-        measure(self, world)
-    }
-}
-
-fn measure(asked: &Multitude, world: &mut World) -> f64 {
-    let Multitude { quantity, ref part, within, up, ref before } = *asked;
-    if quantity == MassesQuantity::Pairs {
-        let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
-        let pairs = &world.state().systems[part.system].pairs;
-        let mut count = pairs.iter().filter(|pair| is_in(pair.a as u32) && is_in(pair.b as u32)).count();
-        world.visit_near(part.system, &mut |rows| count += usize::from(rows.into_iter().all(is_in)));
-        return count as f64;
-    }
-    if quantity == MassesQuantity::Interactions {
-        let forces = world.model().systems[part.system].forces.iter();
-        let of = |rows: &Range<u32>| {
-            part.rows.partition_point(|row| *row < rows.end)
-                - part.rows.partition_point(|row| *row < rows.start)
-        };
-        let pairs = |crowd: &Crowd| {
-            let [first, second] = crowd.rows();
-            let (a, b) = (of(&first) as f64, of(&second) as f64);
-            if first == second { 0.5 * a * (a - 1.0) } else { a * b }
-        };
-        return forces.filter_map(|force| force.as_any().downcast_ref()).map(pairs).sum();
-    }
-    if let MassesQuantity::Temperature | MassesQuantity::Bonds = quantity {
-        return of_fusible(quantity, part, world);
-    }
-    let positions = &world.rows(part.system).positions;
-    let places: Vec<Vec3> = part.rows.iter().map(|row| positions[*row as usize]).collect();
-    if quantity == MassesQuantity::Relief {
-        return relief(&places, within, up);
-    }
-    let near = neighbours(&places, within);
-    match quantity {
-        MassesQuantity::Parts => {
-            let mut sets = Sets::new(places.len());
-            for [a, b] in &near {
-                sets.join(*a, *b);
-            }
-            sets.count() as f64
+        let Multitude { quantity, ref part, within, up, ref before } = *self;
+        if quantity == MassesQuantity::Pairs {
+            let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
+            let pairs = &world.state().systems[part.system].pairs;
+            let mut count = pairs.iter().filter(|pair| is_in(pair.a as u32) && is_in(pair.b as u32)).count();
+            world.visit_near(part.system, &mut |rows| count += usize::from(rows.into_iter().all(is_in)));
+            return count as f64;
         }
-        MassesQuantity::Neighbours => 2.0 * near.len() as f64 / places.len() as f64,
-        MassesQuantity::Spacing => {
-            let apart = |[a, b]: &[u32; 2]| (places[*a as usize] - places[*b as usize]).length();
-            match near.len() {
-                // all stand at least that far apart
-                0 => within,
-                count => near.iter().map(apart).sum::<f64>() / count as f64,
-            }
-        }
-        MassesQuantity::Kept => {
-            let is_still = |[a, b]: &&[u32; 2]| {
-                (places[*a as usize] - places[*b as usize]).length_sq() < within * within
+        if quantity == MassesQuantity::Interactions {
+            let forces = world.model().systems[part.system].forces.iter();
+            let of = |rows: &Range<u32>| {
+                part.rows.partition_point(|row| *row < rows.end)
+                    - part.rows.partition_point(|row| *row < rows.start)
             };
-            let still = before.iter().filter(is_still).count();
-            // of none there is no share, which is told at the end of a run
-            still as f64 / before.len() as f64
+            let pairs = |crowd: &Crowd| {
+                let [first, second] = crowd.rows();
+                let (a, b) = (of(&first) as f64, of(&second) as f64);
+                if first == second { 0.5 * a * (a - 1.0) } else { a * b }
+            };
+            return forces.filter_map(|force| force.as_any().downcast_ref()).map(pairs).sum();
         }
-        MassesQuantity::Relief
-        | MassesQuantity::Pairs
-        | MassesQuantity::Interactions
-        | MassesQuantity::Temperature
-        | MassesQuantity::Bonds => {
-            unreachable!("measured above")
+        if let MassesQuantity::Temperature | MassesQuantity::Bonds = quantity {
+            return of_fusible(quantity, part, world);
+        }
+        let positions = &world.rows(part.system).positions;
+        let places: Vec<Vec3> = part.rows.iter().map(|row| positions[*row as usize]).collect();
+        if quantity == MassesQuantity::Relief {
+            return relief(&places, within, up);
+        }
+        let near = neighbours(&places, within);
+        match quantity {
+            MassesQuantity::Parts => {
+                let mut sets = Sets::new(places.len());
+                for [a, b] in &near {
+                    sets.join(*a, *b);
+                }
+                sets.count() as f64
+            }
+            MassesQuantity::Neighbours => 2.0 * near.len() as f64 / places.len() as f64,
+            MassesQuantity::Spacing => {
+                let apart = |[a, b]: &[u32; 2]| (places[*a as usize] - places[*b as usize]).length();
+                match near.len() {
+                    // all stand at least that far apart
+                    0 => within,
+                    count => near.iter().map(apart).sum::<f64>() / count as f64,
+                }
+            }
+            MassesQuantity::Kept => {
+                let is_still = |[a, b]: &&[u32; 2]| {
+                    (places[*a as usize] - places[*b as usize]).length_sq() < within * within
+                };
+                let still = before.iter().filter(is_still).count();
+                // of none there is no share, which is told at the end of a run
+                still as f64 / before.len() as f64
+            }
+            MassesQuantity::Relief
+            | MassesQuantity::Pairs
+            | MassesQuantity::Interactions
+            | MassesQuantity::Temperature
+            | MassesQuantity::Bonds => {
+                unreachable!("measured above")
+            }
         }
     }
 }
