@@ -102,6 +102,22 @@ pub struct StageTimes {
     pub products: f64,
 }
 
+impl std::ops::Sub for StageTimes {
+    type Output = Self;
+
+    /// What has been spent since an earlier count.
+    fn sub(self, earlier: Self) -> Self {
+        Self {
+            pairs: self.pairs - earlier.pairs,
+            forces: self.forces - earlier.forces,
+            assembly: self.assembly - earlier.assembly,
+            solve: self.solve - earlier.solve,
+            advance: self.advance - earlier.advance,
+            products: self.products - earlier.products,
+        }
+    }
+}
+
 impl StageTimes {
     pub fn total(&self) -> f64 {
         self.pairs + self.forces + self.assembly + self.solve + self.advance

@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use souple_engine::{Edit, EditError};
+use souple_engine::{Edit, EditError, StageTimes};
 use souple_haptics::{DeviceNow, Histogram, Moving, Served, Service, ServiceError, Smoothing, Station};
 
 use crate::{Control, Progress, Session, Stepped, Trace};
@@ -25,6 +25,8 @@ pub struct WorldToll {
     pub drift: f64,
     /// Budgets that the clock has set.
     pub budgets: u64,
+    /// What its periods took by stages.
+    pub stages: StageTimes,
     /// How long periods took from beginning to beginning.
     pub begun: Histogram,
 }
@@ -130,7 +132,7 @@ pub fn run_in_time(
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
     let mut budgets = budgets(session);
     let mut held = vec![true; session.hands.len()];
-    let began = Instant::now();
+    let (began, stages) = (Instant::now(), session.world.stages());
     let (mut dates, mut begun) = (Dates { period, ..Dates::default() }, began);
     let mut was_stopped = false;
     for step in 1..=steps {
@@ -168,6 +170,7 @@ pub fn run_in_time(
         }
     }
     (toll.late, toll.lost) = (dates.late, dates.lost);
+    toll.stages = session.world.stages() - stages;
     toll.drift = dates.drift(toll.periods, began.elapsed().as_secs_f64());
     let served = service.end().ok_or(TimeError::Lost)?;
     Ok(InTime { world: toll, served, traces, was_stopped })

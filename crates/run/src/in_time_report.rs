@@ -48,7 +48,7 @@ fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
 impl InTime {
     /// The report.
     pub fn to_json(&self, session: &Session) -> Value {
-        let (world, toll, stages) = (&self.world, &self.served.toll, session.world.stages());
+        let (world, toll, stages) = (&self.world, &self.served.toll, self.world.stages);
         let mut loads = world.loads.clone();
         loads.sort_by(f64::total_cmp);
         let mean = loads.iter().sum::<f64>() / loads.len().max(1) as f64;
