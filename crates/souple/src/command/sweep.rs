@@ -137,7 +137,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     let search = Search { study, fit, count, stop: &interruption };
     let meter = Meter::new("iterations", arguments.quiet);
     let mut watch = |iterations: usize, residual: f64| {
-        meter.show(iterations as u64, fit.iterations as u64, &format!("residual {residual:.3e}"));
+        meter.show(iterations as u64, fit.iterations as u64, format!("residual {residual:.3e}"));
     };
     let found = search.run(&mut watch)?;
     drop(meter);
