@@ -2,7 +2,7 @@
 //!
 //! `B = T + U + Q − C − W` of what moves, what is stored, what was given off, what controls and couplings made, and the work from outside
 //! ([`souple_scene::power_from_outside`], by the trapezoidal rule over periods). No law makes `B` grow; a step that is too long does, and then exponentially: it is told
-//! when `B` stands above its lowest value so far by `growth` times the energy that was exchanged: the greatest of the kinetic energy and of what went into and out of
+//! when `B` stands above its lowest value so far, and what moves above nothing, by `growth` times the energy that was exchanged: the greatest of the kinetic energy and of what went into and out of
 //! store in the first half of the time that has passed, and of the work that was done until now. A motion that keeps its energy up to the error of its scheme stays far
 //! below that, also one that begins late, since what begins it does work; what grows as `e^{γt}` is above it once `e^{γt/2}` is of the order of
 //! `growth`: the work of led points grows as `e^{γt/2}` only.
@@ -15,6 +15,8 @@ use souple_scene::{BodyInfo, power_from_outside};
 const FIRST: usize = 32;
 /// Rounding of the sums, as a share of what is summed.
 const ROUNDING: f64 = 1e-11;
+/// By how many times the last digit of their places points shake within a period, at rest and without cause.
+const SHAKE: f64 = 100.0;
 /// Values that are held of the time that has passed.
 const HELD: usize = 1024;
 
@@ -37,8 +39,8 @@ pub struct Grown {
 impl Grown {
     pub fn message(&self) -> String {
         format!(
-            "at {:.6} s there are {:.3e} J more than work can account for, {:.3} times what moved, was stored and worked before; most of it \
-             is in `{}`, whose point {} moves at {:.3e} m/s: the step may be too long, see `souple check`",
+            "at {:.6} s there are {:.3e} J more than work can account for, {:.3e} times what moved, was stored and worked before; most of it \
+             is in `{}`, whose point {} moves at {:.3e} m/s: the step may be too long (`souple check` tells the longest), or something works that is not counted",
             self.time,
             self.excess,
             self.excess / self.reference,
@@ -147,7 +149,8 @@ impl Monitor {
         let summed = energy.kinetic + stored.abs() + dissipated.abs() + made.abs() + self.work.abs();
         // a start is as wrong later on as at the beginning, by the work of a period
         let begun = self.peak * FIRST as f64 * world.model().period;
-        let reference = self.exchanged.half().max(self.worked + begun).max(ROUNDING * summed);
+        let floor = (ROUNDING * summed).max(shaken(world));
+        let reference = self.exchanged.half().max(self.worked + begun).max(floor);
         (balance - self.lowest, reference)
     }
 
@@ -163,9 +166,11 @@ impl Monitor {
         self.peak = self.peak.max(power.abs());
         self.power = power;
         let (excess, reference) = self.take(world);
+        // energies of what rests are rounded too, by far more than it moves; of what swings half of its energy moves in the mean
+        let moving = 2.0 * world.energy().kinetic;
         // what is no number is not below it either
-        let is_well =
-            self.exchanged.count <= FIRST || (excess.is_finite() && excess <= self.spec.growth * reference);
+        let is_well = self.exchanged.count <= FIRST
+            || (excess.is_finite() && excess.min(moving) <= self.spec.growth * reference);
         if is_well {
             return None;
         }
@@ -181,6 +186,19 @@ impl Monitor {
         self.grown = Some(Grown { time, body, point, speed, excess, reference });
         self.grown.as_ref()
     }
+}
+
+/// Kinetic energy of points that shake by [`SHAKE`] [J].
+fn shaken(world: &World) -> f64 {
+    let rate = SHAKE * f64::EPSILON / world.model().period;
+    let of_system = |(index, system): (usize, &souple_engine::System)| -> f64 {
+        let places = world.rows(index).positions.iter();
+        places
+            .zip(&system.mass.diagonal)
+            .map(|(place, mass)| 0.5 * mass * place.length_sq() * rate * rate)
+            .sum()
+    };
+    world.model().systems.iter().enumerate().map(of_system).sum()
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use souple_run::{Control, Options, Status, Trace};
 use toml::{Table, Value};
 
 use crate::SweepError;
-use crate::least_squares::{Answer, Ending, Problem, mean_square, standard_errors};
+use crate::least_squares::{Answer, Certainty, Ending, Problem, certainty, mean_square};
 use crate::study::Study;
 
 /// What is looked for.
@@ -54,8 +54,10 @@ pub struct Unknown {
 /// What was found.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// Values, and their standard errors; not known where points are no more than values, or where a value changes nothing.
+    /// Values, and their standard errors; not known where points are no more than values, where a value changes nothing, or of `alike`.
     pub values: Vec<(f64, Option<f64>)>,
+    /// Values, by their numbers, that the curve does not tell from one another: other ones give the same.
+    pub alike: Vec<usize>,
     /// Root of the mean square of what is left.
     pub residual: f64,
     /// Share of the curve's own variance that is explained; `None` where it has none.
@@ -436,7 +438,7 @@ impl Search<'_> {
         let points = fit.curve.len() as f64;
         let mean = fit.curve.iter().map(|[_, y]| y).sum::<f64>() / points;
         let variance = fit.curve.iter().map(|[_, y]| (y - mean).powi(2)).sum::<f64>() / points;
-        let errors = standard_errors(&found);
+        let Certainty { errors, alike } = certainty(&found);
         let value = |(k, unknown): (usize, &Unknown)| {
             let place = found.places[k];
             (unknown.value(place), errors[k].map(|error| error * unknown.rate(place)))
@@ -444,6 +446,7 @@ impl Search<'_> {
         let curve = fit.curve.iter().zip(&found.residuals).map(|([x, y], r)| [*x, *y, y + r]).collect();
         Ok(Some(Found {
             values: unknowns.iter().enumerate().map(value).collect(),
+            alike,
             residual: square.sqrt(),
             explained: (variance > 0.0).then(|| 1.0 - square / variance),
             iterations: found.iterations,

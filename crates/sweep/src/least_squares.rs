@@ -213,21 +213,55 @@ fn damped_step(found: &Solution, free: &[usize], damping: f64) -> Option<Vec<f64
     step.iter().all(|change| change.is_finite()).then_some(step)
 }
 
-/// `√(s² (JᵀJ)⁻¹_kk)`, `s² = Σ r²/(n − k)`.
-pub(crate) fn standard_errors(found: &Solution) -> Vec<Option<f64>> {
+/// The sine of the angle between a column and what the others span, below which it is not told from them: a hundred times
+/// the error of a slope.
+const ALIKE: f64 = 100.0 * DIFFERENCE;
+
+/// What is known of the places that were found.
+pub(crate) struct Certainty {
+    /// `√(s² (JᵀJ)⁻¹_kk)`, `s² = Σ r²/(n − k)`, where it is known.
+    pub errors: Vec<Option<f64>>,
+    /// Places that can be changed together without a change of the residuals.
+    pub alike: Vec<usize>,
+}
+
+/// Of the slopes where the search ended: `(JᵀJ)⁻¹_kk` is one over the square of what is left of a column beside the others.
+pub(crate) fn certainty(found: &Solution) -> Certainty {
     let (count, points) = (found.places.len(), found.residuals.len());
-    let columns: Vec<usize> = (0..count).collect();
+    let mut certainty = Certainty { errors: vec![None; count], alike: Vec::new() };
     let freedom = points.saturating_sub(count);
-    let of = |k: usize| {
-        if found.jacobian.is_empty() || freedom == 0 {
-            return None;
+    for (k, column) in found.jacobian.iter().enumerate().filter(|(_, column)| length(column) > 0.0) {
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        for (_, other) in found.jacobian.iter().enumerate().filter(|(index, _)| *index != k) {
+            let left = beside(other, &basis);
+            let size = length(&left);
+            if size > ALIKE * length(other) {
+                basis.push(left.iter().map(|entry| entry / size).collect());
+            }
         }
-        let unit = (0..count).map(|i| f64::from(u8::from(i == k))).collect();
-        let column = solve(normal(&found.jacobian, &columns), unit)?;
-        let square = dot(&found.residuals, &found.residuals) / freedom as f64;
-        (column[k] > 0.0).then(|| (square * column[k]).sqrt())
-    };
-    columns.iter().map(|k| of(*k)).collect()
+        let left = length(&beside(column, &basis));
+        if left <= ALIKE * length(column) {
+            certainty.alike.push(k);
+        } else if freedom > 0 {
+            let square = dot(&found.residuals, &found.residuals) / freedom as f64;
+            certainty.errors[k] = Some(square.sqrt() / left);
+        }
+    }
+    certainty
+}
+
+fn length(column: &[f64]) -> f64 {
+    dot(column, column).sqrt()
+}
+
+/// What of a column is at right angles to all of an orthonormal basis.
+fn beside(column: &[f64], basis: &[Vec<f64>]) -> Vec<f64> {
+    let mut left = column.to_vec();
+    for direction in basis {
+        let along = dot(&left, direction);
+        left.iter_mut().zip(direction).for_each(|(entry, direction)| *entry -= along * direction);
+    }
+    left
 }
 
 /// Gaussian elimination with pivots; `None` where the matrix is singular.
@@ -295,6 +329,21 @@ mod tests {
         let found = search(&[0.1, 0.1], 50, &residuals).unwrap().unwrap();
         assert_eq!((found.ending, found.places[0]), (Ending::Converged, 1.0));
         assert!((found.places[1] - 0.5).abs() < 1e-6, "{:?}", found.places);
+    }
+
+    /// Of `x + y` alone neither is known, however little is left; a third that stands apart is.
+    #[test]
+    fn what_is_not_told_apart_has_no_error() {
+        let residuals = |at: &[f64]| {
+            let of = |point: f64| {
+                (at[0] + at[1] - 0.9) * point + (at[2] - 0.4) * point * point + 1e-4 * (9.0 * point).sin()
+            };
+            Answer::Residuals((1..=8).map(|point| of(f64::from(point) / 8.0)).collect())
+        };
+        let found = search(&[0.2, 0.3, 0.1], 50, &residuals).unwrap().unwrap();
+        let Certainty { errors, alike } = certainty(&found);
+        assert_eq!((alike, errors[2].is_some()), (vec![0, 1], true));
+        assert_eq!(errors[..2], [None, None]);
     }
 
     /// Where slopes say that it descends and it does not, nothing was found: `|x - 0.3|` behind a wall of what cannot be run.

@@ -148,6 +148,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     let columns = [column(abscissa, 0), column("measured", 1), column(&fit.probe.name, 2)];
     souple_io::write_csv(&out, &columns)?;
     let of_values = fit.unknowns.iter().zip(&found.values);
+    let alike: Vec<&str> = found.alike.iter().map(|index| fit.unknowns[*index].path.as_str()).collect();
     if arguments.json {
         let value = |(unknown, (value, error)): (&Unknown, &(f64, Option<f64>))| {
             json!({
@@ -168,6 +169,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
             "iterations": found.iterations,
             "runs": found.runs,
             "converged": found.ending == Ending::Converged,
+            "alike": alike,
             "points": found.curve.len(),
             "files": [out.display().to_string()],
         }));
@@ -187,6 +189,13 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
             counted(found.runs as u64, "run")
         ));
         print_line(format_args!("  {}", out.display()));
+    }
+    if !found.alike.is_empty() {
+        print_note(format_args!(
+            "warning: the curve does not tell {} apart: other values of {} give the same; fix one, or measure something else",
+            alike.join(", "),
+            if alike.len() == 1 { "it" } else { "them" }
+        ));
     }
     let iterations = counted(found.iterations as u64, "iteration");
     match found.ending {

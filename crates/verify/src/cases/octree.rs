@@ -187,7 +187,7 @@ pub(super) const CASES: &[Case] = &[
         reference: 298.0,
         tolerance: Tolerance::Absolute(0.0),
         source: "specification, V-10",
-        mutation: "bodies.cube.octree.levels=3",
+        mutation: r#"bodies.cube.octree.fixed="if(x < 0.155, 1, 0)""#,
         ..MIXED
     },
     Case {
@@ -199,7 +199,7 @@ pub(super) const CASES: &[Case] = &[
         reference: 340.0,
         tolerance: Tolerance::Absolute(0.0),
         source: "specification, V-10",
-        mutation: "bodies.cube.octree.levels=3",
+        mutation: r#"bodies.cube.octree.fixed="if(x < 0.155, 1, 0)""#,
         ..MIXED
     },
     Case {
