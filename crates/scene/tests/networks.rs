@@ -311,7 +311,7 @@ fn contours_far_too_fine_are_refused() {
     let contour = |way: &str, more: &str| {
         format!("{TWO}[networks.n.contours.edge]\n{way} = [\"a\"]\nradius = 0.5\n{more}\n")
     };
-    refused(&contour("frontier", "step = 1e-6"), &["550000 times", "at least 0.00055 m"]);
+    refused(&contour("frontier", "step = 1e-6"), &["5.500e5 times", "at least 0.00055 m"]);
     refused(&contour("frontier", "probe = 1e6"), &["`radius` and `probe` together"]);
     refused(&contour("scan", "step = 1e-9"), &["into `radius`, 0.5 m", "at least 0.0005 m"]);
     assert!(scene(&contour("scan", "step = 0.001")).is_ok());
