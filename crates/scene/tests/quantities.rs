@@ -316,6 +316,7 @@ fill = { shape = { name = "sphere", centre = [0, 0, 0], radius = 2 }, spacing = 
 mass = 1
 [[networks.cube.crowds]]
 law = { name = "ball", threshold = 1, stiffness = 1000, damping = 5 }
+fusible = { capacity = 1, conductance = 1, softening = 300, melting = 320, stiffness = 10, damping = 0.02, reach = 1, temperature = "290" }
 [networks.cube.contours.trace]
 scan = ["balls"]
 radius = 0.7
