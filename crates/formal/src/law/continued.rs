@@ -8,8 +8,8 @@ use super::EnergyLaw;
 use crate::Function;
 use crate::graph::{Comparison, Expr, Graph, Node};
 
-/// The ratio of volumes below which `J` in powers and logarithms goes on as a positive function that vanishes towards minus
-/// infinity.
+/// The ratio of volumes below which `J` in powers that are not whole and positive goes on as a positive function that vanishes
+/// towards minus infinity, and `ln J` as a parabola.
 pub const SMALLEST_VOLUME: f64 = 0.05;
 
 impl EnergyLaw {
