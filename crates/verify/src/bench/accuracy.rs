@@ -60,6 +60,7 @@ pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         }
     }
     let [hexahedra, tetrahedra] = &curves;
+    // only with full effort there are more meshes of tetrahedra than of hexahedra
     let finest = tetrahedra.last().filter(|_| tetrahedra.len() > count("hex8"));
     for (error, seconds) in hexahedra.iter().filter(|(error, _)| *error < LARGEST_ERROR) {
         // the first tetrahedra that are as right; where none are, the finest take less than those would
