@@ -71,6 +71,16 @@ pub struct Monitor {
     pub grown: Option<Grown>,
 }
 
+/// What there is at a period [J].
+#[derive(Clone, Copy, Debug)]
+struct Balance {
+    /// `B − min B`.
+    excess: f64,
+    kinetic: f64,
+    /// What was exchanged.
+    reference: f64,
+}
+
 /// Values that never fall, thinned out by half whenever there are too many.
 #[derive(Clone, Debug)]
 struct History {
@@ -134,8 +144,8 @@ impl Monitor {
         self.spec.stops
     }
 
-    /// Takes the balance of now; `B − min B` and the reference.
-    fn take(&mut self, world: &mut World) -> (f64, f64) {
+    /// Takes the balance of now.
+    fn take(&mut self, world: &mut World) -> Balance {
         let energy = world.energy();
         let dissipated: f64 = energy.by_force.iter().map(|(_, energy)| energy.dissipated).sum();
         let made: f64 =
@@ -151,7 +161,7 @@ impl Monitor {
         let begun = self.peak * FIRST as f64 * world.model().period;
         let floor = (ROUNDING * summed).max(shaken(world));
         let reference = self.exchanged.half().max(self.worked + begun).max(floor);
-        (balance - self.lowest, reference)
+        Balance { excess: balance - self.lowest, kinetic: energy.kinetic, reference }
     }
 
     /// Looks at a period that has passed; what it has found the first time.
@@ -165,9 +175,9 @@ impl Monitor {
         self.worked += done.abs();
         self.peak = self.peak.max(power.abs());
         self.power = power;
-        let (excess, reference) = self.take(world);
+        let Balance { excess, kinetic, reference } = self.take(world);
         // energies of what rests are rounded too, by far more than it moves; of what swings half of its energy moves in the mean
-        let moving = 2.0 * world.energy().kinetic;
+        let moving = 2.0 * kinetic;
         // what is no number is not below it either
         let is_well = self.exchanged.count <= FIRST
             || (excess.is_finite() && excess.min(moving) <= self.spec.growth * reference);

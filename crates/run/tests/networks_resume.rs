@@ -168,7 +168,7 @@ fn memories_are_in_use() {
     let kept = |world: &World| world.state().systems[0].kept.clone();
     let keeping = kept(&middle).counts.iter().filter(|count| **count > 0).count();
     assert!(
-        keeping >= 2 && kept(&middle) != kept(&end),
+        keeping == 3 && kept(&middle) != kept(&end),
         "{keeping}: grains stick to each other and to the ground, wax to itself"
     );
     assert_ne!(start.state().driven, end.state().driven, "the latch never opened");
