@@ -217,6 +217,9 @@ impl ProbeInfo {
                 });
                 let up = (-weight).try_normalised().unwrap_or(Vec3::Z);
                 let (part, within) = (part(probe, draft)?, probe.within.unwrap_or(0.0));
+                if matches!(quantity, MassesQuantity::Temperature | MassesQuantity::Bonds) {
+                    has_heat(probe, draft)?;
+                }
                 Target::Masses(Box::new(Multitude::new(quantity, part, within, up)))
             }
             (Subject::Levels(quantity), _) => Target::Levels(quantity, levels_part(probe, draft)?),
@@ -358,6 +361,19 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
         return None;
     }
     Some(Part { rows: body.mass_rows().map(|row| row as u32).collect(), ..part })
+}
+
+/// Whether masses of the body have temperatures; `None` where they have none, which is reported.
+fn has_heat(probe: &Probe, draft: &Draft) -> Option<()> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let crowds = body.spec.network.iter().flat_map(|network| &network.crowds);
+    if crowds.into_iter().all(|crowd| crowd.fusible.is_none()) {
+        let message =
+            format!("nothing of body `{}` melts: it has no temperature and no bonds", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a network with a crowd that is `fusible`");
+        return None;
+    }
+    Some(())
 }
 
 /// What of a body follows a bone: frames, and what its pins hold; `None` where nothing does, which is reported.
