@@ -56,8 +56,7 @@ pub(crate) fn did_you_mean(nearest: &Option<String>) -> String {
 impl ParseError {
     /// The message without the place, for those who show it.
     pub fn without_place(&self) -> String {
-        let span = self.span();
-        self.to_string().replace(&format!(" (at {span})"), "").replace(&format!(" at {span}"), "")
+        self.span().taken_out_of(&self.to_string())
     }
 
     /// The place in the text that was read.

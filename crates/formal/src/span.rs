@@ -24,6 +24,16 @@ impl Span {
         Self::new(self.start, other.end)
     }
 
+    /// Of a piece that begins at a byte of a text, in that text.
+    pub fn moved_by(self, bytes: usize) -> Self {
+        Self::new(self.start + bytes, self.end + bytes)
+    }
+
+    /// A message without the words that say where, for those who show it.
+    pub fn taken_out_of(self, message: &str) -> String {
+        message.replace(&format!(" (at {self})"), "").replace(&format!(" at {self}"), "")
+    }
+
     /// Whether `other` lies within it.
     pub fn contains(self, other: Self) -> bool {
         self.start <= other.start && other.end <= self.end

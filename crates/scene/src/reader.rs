@@ -54,10 +54,11 @@ impl<B> Chosen<B> {
         self.written.iter().find(|(name, _)| *name == parameter).map_or(&self.site, |(_, site)| site)
     }
 
-    /// Where a part of a text is; the whole text, or else what is chosen, where that is not known.
+    /// Where a part of a text is; the whole text, the first of its keys or else what is chosen, where that is not known.
     pub fn site_of_part(&self, keys: &str, part: Option<Span>) -> Site {
         let Some((_, site, layout)) = self.texts.iter().find(|(known, ..)| known == keys) else {
-            return self.site_of(keys).clone();
+            let first = keys.split('.').next().unwrap_or(keys);
+            return self.site_of(first).clone();
         };
         let place = part.and_then(|part| layout.place_of(part));
         Site { place: place.unwrap_or(site.place), ..site.clone() }

@@ -300,13 +300,30 @@ fn faults_in_texts_point_at_their_characters() {
         let from: String = line.chars().skip(error.column - 1).collect();
         assert!(from.starts_with(read) && error.value == read, "`{read}`: {errors}");
     }
-    // laws of links, their parameters and transitions, and heights are built from their texts later
+    // laws of links with their parameters, states, transitions, entries and memory, and heights are built from their texts later
     let link = |law: &str| {
         format!(
             "format = 1\n[world]\nperiod = 0.01\n[systems.main]\nstepper = \"t_simulation\"\n\
              [networks.n.masses.bob]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 1\n\
              [[networks.n.links]]\nlaw = {law}\nof = [\"bob\", \"bob\"]\nall = true\nrest_length = 1\n"
         )
+    };
+    // one of five keys is written otherwise
+    let finite_state = |key: &str| {
+        let keys = [
+            "states = { a = \"0\", b = \"k\" }",
+            "transitions = { \"a -> b\" = \"D < 1\" }",
+            "entries = { b = \"k = 1\" }",
+            "memory = { k = \"0\" }",
+            "parameters = { c = 1 }",
+        ];
+        let name = |key: &str| key.split(' ').next().map(str::to_owned);
+        let keys = keys.map(|known| if name(known) == name(key) { key } else { known });
+        link(&format!("{{ name = \"finite_state\", {} }}", keys.join(", ")))
+    };
+    let conditional = |first: &str, more: &str| {
+        let more = if more.is_empty() { String::new() } else { format!(", {more}") };
+        link(&format!("{{ name = \"conditional\", states = {{ {first}, b = \"VN\" }}{more} }}"))
     };
     let height = |formula: &str| {
         format!(
@@ -320,6 +337,15 @@ fn faults_in_texts_point_at_their_characters() {
         (link("{ name = \"formula\", push = \"-k*D\", parameters = { k = \"2 + qq\" } }"), "qq"),
         (link("{ name = \"rheological\", network = \"spring(3) - spong(2)\" }"), "spong"),
         (height("\"0.1*sim(x)\""), "sim"),
+        (finite_state("entries = { b = \"L0 = D; k = 2*zz\" }"), "zz"),
+        (finite_state("states = { a = \"0\", b = \"3*(D - L0) + yy\" }"), "yy"),
+        (finite_state("transitions = { \"a -> b\" = \"D < xx\" }"), "xx"),
+        (finite_state("memory = { k = \"1 + ww\" }"), "ww"),
+        (finite_state("parameters = { c = \"2*vv\" }"), "vv"),
+        (conditional("a = \"LN; SUP, L, 3*qq -> b\"", ""), "qq"),
+        (conditional("a = \"LN;  CHK,  7*pp; SUP, L, 1 -> b\"", ""), "pp"),
+        (conditional("a = 'SUP, L, far -> b'", "parameters = { far = \"1 + oo\" }"), "oo"),
+        (conditional("a = 'CDX -> b'", "external = \"t - nn\""), "nn"),
         (
             BAR.replace(
                 "[[bodies.bar.pins]]",
@@ -330,8 +356,11 @@ fn faults_in_texts_point_at_their_characters() {
     ] {
         let errors =
             read_text("scene.toml", &text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("{read}"));
-        let told = errors.0.iter().any(|error| error.value == read && !error.message.contains("byte"));
-        assert!(told, "`{read}`: {errors}");
+        let told = errors.0.iter().find(|error| error.value == read && !error.message.contains("byte"));
+        let Some(error) = told else { panic!("`{read}`: {errors}") };
+        let line = text.lines().nth(error.line - 1).unwrap_or_default();
+        let from: String = line.chars().skip(error.column - 1).collect();
+        assert!(from.starts_with(read), "`{read}`: {errors}");
     }
     // every fault of a law at once
     let both = law("\"mu*dot(E, E)\"").replace("{ mu = \"1 MPa\" }", "{ mu = \"1 MPq\", k = \"3 kPz\" }");

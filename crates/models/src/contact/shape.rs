@@ -92,8 +92,16 @@ impl Outline {
 pub enum ShapeError {
     #[error("`{field}` is {value}, but must be {expected}")]
     Unfit { field: &'static str, value: String, expected: &'static str },
-    #[error("`{field}`: {}; a formula of {variables} is accepted", error.without_place())]
-    Formula { field: &'static str, variables: &'static str, error: Box<ParseError> },
+    #[error(
+        "`{field}` = \"{text}\" is no formula: {error}; one of {variables} is accepted, such as {example}"
+    )]
+    Formula {
+        field: &'static str,
+        text: String,
+        variables: &'static str,
+        example: &'static str,
+        error: Box<ParseError>,
+    },
     #[error("`{field}` = \"{surface}\" cannot be a shape: {error}")]
     Surface { field: &'static str, surface: String, error: Box<MeshError> },
     #[error("`{field}` = \"{surface}\" cannot be read: {message}")]

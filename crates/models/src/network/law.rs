@@ -132,22 +132,33 @@ pub enum LinkError {
     #[error("`{parameter}` is {value}, but {expected}")]
     Unfit { parameter: &'static str, value: String, expected: String },
     #[error("`{place}`: {}", error.without_place())]
-    Formula { place: String, error: ParseError },
+    Formula {
+        place: String,
+        /// Where the formula begins in the text there [bytes].
+        begin: usize,
+        error: ParseError,
+    },
     #[error("`{place}` {what}")]
-    Text { place: String, what: String },
-    /// Of a part of a text.
-    #[error("`{place}` {what}")]
-    Part { place: String, what: String, part: Option<Span> },
+    Text {
+        place: String,
+        what: String,
+        /// What of the text is meant, where it is not all of it.
+        part: Option<Span>,
+    },
 }
 
 impl LinkError {
+    /// Of all that is written at a place.
+    pub fn text(place: impl Into<String>, what: impl Into<String>) -> Self {
+        Self::Text { place: place.into(), what: what.into(), part: None }
+    }
+
     /// The keys that lead to what is wrong, and where that is in the text there.
     pub fn place(&self) -> (&str, Option<Span>) {
         match self {
             Self::Unfit { parameter, .. } => (parameter, None),
-            Self::Formula { place, error } => (place, Some(error.span())),
-            Self::Text { place, .. } => (place, None),
-            Self::Part { place, part, .. } => (place, *part),
+            Self::Formula { place, begin, error } => (place, Some(error.span().moved_by(*begin))),
+            Self::Text { place, part, .. } => (place, *part),
         }
     }
 }

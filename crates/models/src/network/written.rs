@@ -231,7 +231,7 @@ impl<T: Copy> Arguments<T> {
 pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>, Vec<f64>), LinkError> {
     if texts.len() + others > ARGUMENTS {
         let what = format!("are {}; at most {}", texts.len(), ARGUMENTS - others);
-        return Err(LinkError::Text { place: "parameters".to_owned(), what });
+        return Err(LinkError::text("parameters", what));
     }
     let mut values = Vec::with_capacity(texts.len());
     for (name, text) in texts {
@@ -241,10 +241,7 @@ pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>
             Err(_) => formula(&place(), text, &[])?.evaluate(&[]),
         };
         if !value.is_finite() {
-            return Err(LinkError::Text {
-                place: place(),
-                what: format!("is {value}: give a finite number"),
-            });
+            return Err(LinkError::text(place(), format!("is {value}: give a finite number")));
         }
         values.push(value);
     }
@@ -253,5 +250,25 @@ pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>
 
 /// Reads a formula of `variables`.
 pub fn formula(place: &str, text: &str, variables: &[&str]) -> Result<Formula, LinkError> {
-    Formula::compile(text, variables).map_err(|error| LinkError::Formula { place: place.to_owned(), error })
+    formula_within(place, text, text, variables)
+}
+
+/// Reads a formula that is a piece of a text: a slice of it. Faults are told by their place in the text.
+pub fn formula_within(
+    place: &str,
+    text: &str,
+    piece: &str,
+    variables: &[&str],
+) -> Result<Formula, LinkError> {
+    Formula::compile(piece, variables).map_err(|error| LinkError::Formula {
+        place: place.to_owned(),
+        begin: begin_within(text, piece),
+        error,
+    })
+}
+
+/// Where a slice of a text begins in it [bytes]; 0 where it is none.
+pub fn begin_within(text: &str, piece: &str) -> usize {
+    let begin = (piece.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
+    if begin <= text.len() { begin } else { 0 }
 }

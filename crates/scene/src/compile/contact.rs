@@ -180,11 +180,16 @@ pub(super) fn built(draft: &Draft, chosen: &Chosen<BuildShape>) -> Option<Box<dy
     match (chosen.entry.build)(&chosen.values, &|file| read_surface(&open(file)?)) {
         Ok(built) => Some(built),
         Err(error) => {
-            let site = match &error {
-                ShapeError::Formula { field, error, .. } => chosen.site_of_part(field, Some(error.span())),
-                _ => chosen.site.clone(),
+            // the file shows the text and where in it
+            let (site, message, expected) = match &error {
+                ShapeError::Formula { field, variables, example, error, .. } => (
+                    chosen.site_of_part(field, Some(error.span())),
+                    format!("`{field}`: {}", error.without_place()),
+                    format!("a formula of {variables}, such as {example}"),
+                ),
+                _ => (chosen.site.clone(), error.to_string(), "a shape that can be".to_owned()),
             };
-            draft.log.add(Code::Mesh, &site, error.to_string(), "a shape that can be");
+            draft.log.add(Code::Mesh, &site, message, expected);
             None
         }
     }

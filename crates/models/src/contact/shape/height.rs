@@ -127,7 +127,9 @@ pub(super) const ENTRY: ShapeEntry = ShapeEntry {
         let unfit = |field, value, expected| ShapeError::Unfit { field, value, expected };
         let formula = Formula::compile(text, &VARIABLES).map_err(|error| ShapeError::Formula {
             field: "height",
+            text: text.to_owned(),
             variables: "x and y",
+            example: "\"0.1 * sin(x)\"",
             error: Box::new(error),
         })?;
         let corner = |name| Vec3::from_array(values.vector(name));

@@ -12,7 +12,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
 use crate::network::law::{AsksFor, LinkEntry, LinkError, Making, Moment, Reach, Response};
-use crate::network::written::{OneByOne, WrittenLaw};
+use crate::network::written::{OneByOne, WrittenLaw, formula, formula_within};
 
 /// Numbers that a link remembers: the state, `K`, `Z`, `L0`, and `dV` of the step before.
 const STATE: usize = 0;
@@ -263,7 +263,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
 };
 
 fn refuse<T>(place: &str, what: impl Into<String>) -> Result<T, LinkError> {
-    Err(LinkError::Text { place: place.to_owned(), what: what.into() })
+    Err(LinkError::text(place, what))
 }
 
 fn read(making: &Making) -> Result<Conditional, LinkError> {
@@ -274,7 +274,7 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
     }
     let external = match making.values.text("external") {
         "" => None,
-        text => Some(crate::network::written::formula("external", text, &["t"])?),
+        text => Some(formula("external", text, &["t"])?),
     };
     let reader = Words {
         names: &names,
@@ -285,7 +285,7 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
     };
     let mut states = Vec::new();
     for (name, text) in texts {
-        states.push(reader.state(&format!("states.{name}"), text)?);
+        states.push(reader.state(Said { place: &format!("states.{name}"), text })?);
     }
     let compares_moved = |transition: &Transition| {
         use Condition::{ChangesSign, Grows, Shrinks};
@@ -360,6 +360,13 @@ fn covers(one: Condition, other: Condition) -> bool {
     }
 }
 
+/// What is written of a state, and the keys that lead there.
+#[derive(Clone, Copy)]
+struct Said<'a> {
+    place: &'a str,
+    text: &'a str,
+}
+
 /// What words mean.
 struct Words<'a> {
     names: &'a [&'a str],
@@ -371,22 +378,22 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    fn state(&self, place: &str, text: &str) -> Result<State, LinkError> {
+    fn state(&self, said: Said) -> Result<State, LinkError> {
         let mut state = State::default();
-        for words in text.split(';').map(str::trim).filter(|words| !words.is_empty()) {
+        for words in said.text.split(';').map(str::trim).filter(|words| !words.is_empty()) {
             match words.split_once("->") {
                 Some((condition, to)) => {
                     let to = to.trim();
                     let Some(to) = self.names.iter().position(|name| *name == to) else {
                         return refuse(
-                            place,
+                            said.place,
                             format!("leads to the state `{to}`; there are {}", self.names.join(", ")),
                         );
                     };
-                    let condition = self.condition(place, condition.trim())?;
+                    let condition = self.condition(said, condition.trim())?;
                     state.transitions.push(Transition { condition, to });
                 }
-                None => self.disposition(place, words, &mut state)?,
+                None => self.disposition(said, words, &mut state)?,
             }
         }
         // nothing holds from the greatest bound on where all conditions ask for short links
@@ -399,16 +406,16 @@ impl Words<'_> {
         Ok(state)
     }
 
-    fn disposition(&self, place: &str, words: &str, state: &mut State) -> Result<(), LinkError> {
+    fn disposition(&self, said: Said, words: &str, state: &mut State) -> Result<(), LinkError> {
         let parts: Vec<&str> = words.split(',').map(str::trim).collect();
         match parts[..] {
             ["LN"] => state.without_elongation = true,
             ["VN"] => state.without_velocity = true,
             ["CHK", number] => {
-                state.entries.push(Disposition::Stiffness(self.positive(place, words, number)?));
+                state.entries.push(Disposition::Stiffness(self.positive(said, words, number)?));
             }
             ["CHZ", number] => {
-                let damping = self.positive(place, words, number)? / self.timestep;
+                let damping = self.positive(said, words, number)? / self.timestep;
                 state.entries.push(Disposition::Damping(damping));
             }
             [words] if words.replace(' ', "") == "L0=D" => state.entries.push(Disposition::RestHere),
@@ -416,28 +423,30 @@ impl Words<'_> {
                 let what = format!(
                     "says `{words}`: write `L0=D`, `CHK, k`, `CHZ, z`, `LN`, `VN`, or a condition with `-> state`"
                 );
-                return refuse(place, what);
+                return refuse(said.place, what);
             }
         }
         Ok(())
     }
 
-    fn condition(&self, place: &str, words: &str) -> Result<Condition, LinkError> {
+    fn condition(&self, said: Said, words: &str) -> Result<Condition, LinkError> {
         let parts: Vec<&str> = words.split(',').map(str::trim).collect();
         Ok(match parts[..] {
-            ["AUG", variable] => Condition::Grows(self.variable(place, variable)?),
-            ["DIM", variable] => Condition::Shrinks(self.variable(place, variable)?),
-            ["CHS", variable] => Condition::ChangesSign(self.variable(place, variable)?),
-            ["SUP", variable, bound] => {
-                Condition::Above(self.variable(place, variable)?, self.bound(place, words, variable, bound)?)
-            }
-            ["INF", variable, bound] => {
-                Condition::Below(self.variable(place, variable)?, self.bound(place, words, variable, bound)?)
-            }
+            ["AUG", variable] => Condition::Grows(self.variable(said.place, variable)?),
+            ["DIM", variable] => Condition::Shrinks(self.variable(said.place, variable)?),
+            ["CHS", variable] => Condition::ChangesSign(self.variable(said.place, variable)?),
+            ["SUP", variable, bound] => Condition::Above(
+                self.variable(said.place, variable)?,
+                self.bound(said, words, variable, bound)?,
+            ),
+            ["INF", variable, bound] => Condition::Below(
+                self.variable(said.place, variable)?,
+                self.bound(said, words, variable, bound)?,
+            ),
             ["CDX"] if self.has_external => Condition::External,
             ["CDX"] => {
                 return refuse(
-                    place,
+                    said.place,
                     "asks for `CDX`, and there is no `external`: the condition never holds",
                 );
             }
@@ -447,7 +456,7 @@ impl Words<'_> {
                     "has the condition `{words}`: write `AUG, var`, `DIM, var`, `CHS, var`, `SUP, var, number`, \
                      `INF, var, number`, `CDX` or `ANY`"
                 );
-                return refuse(place, what);
+                return refuse(said.place, what);
             }
         })
     }
@@ -487,25 +496,37 @@ impl Words<'_> {
     }
 
     /// A bound of a variable; velocities are given in m/s, and are lengths of a step within.
-    fn bound(&self, place: &str, words: &str, variable: &str, number: &str) -> Result<f64, LinkError> {
-        let number = self.number(place, words, number)?;
+    fn bound(&self, said: Said, words: &str, variable: &str, number: &str) -> Result<f64, LinkError> {
+        let number = self.number(said, words, number)?;
         Ok(if variable == "dV" { number * self.timestep } else { number })
     }
 
-    fn positive(&self, place: &str, words: &str, number: &str) -> Result<f64, LinkError> {
-        let value = self.number(place, words, number)?;
-        if value < 0.0 { refuse(place, format!("says `{words}`: a number of at least 0")) } else { Ok(value) }
+    fn positive(&self, said: Said, words: &str, number: &str) -> Result<f64, LinkError> {
+        let value = self.number(said, words, number)?;
+        if value < 0.0 {
+            refuse(said.place, format!("says `{words}`: a number of at least 0"))
+        } else {
+            Ok(value)
+        }
     }
 
     /// A number in SI units, a quantity or the name of a parameter.
-    fn number(&self, place: &str, words: &str, text: &str) -> Result<f64, LinkError> {
-        let named = self.parameters.iter().find(|(name, _)| name == text).map(|(_, value)| value.as_str());
-        let text = named.unwrap_or(text);
+    fn number(&self, said: Said, words: &str, text: &str) -> Result<f64, LinkError> {
+        let named = self.parameters.iter().find(|(name, _)| name == text);
+        let text = named.map_or(text, |(_, value)| value);
+        let formula = || match named {
+            Some((name, _)) => formula(&format!("parameters.{name}"), text, &[]),
+            None => formula_within(said.place, said.text, text, &[]),
+        };
         let value = match parse_quantity(text) {
             Ok(quantity) => quantity.value,
-            Err(_) => crate::network::written::formula(place, text, &[])?.evaluate(&[]),
+            Err(_) => formula()?.evaluate(&[]),
         };
-        if value.is_finite() { Ok(value) } else { refuse(place, format!("says `{words}`: a finite number")) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            refuse(said.place, format!("says `{words}`: a finite number"))
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{
-    ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula,
+    ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula, formula_within,
 };
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
@@ -177,7 +177,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
 };
 
 fn text(place: impl Into<String>, what: impl Into<String>) -> LinkError {
-    LinkError::Text { place: place.into(), what: what.into() }
+    LinkError::text(place, what)
 }
 
 fn read(making: &Making) -> Result<FiniteState, LinkError> {
@@ -214,8 +214,11 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
             .split_once("->")
             .ok_or_else(|| text(&place, "is no transition: write \"a -> b\" for from a to b"))?;
         let (from, to) = (find(&place, from.trim())?, find(&place, to.trim())?);
-        let condition = Condition::compile(condition, &variables)
-            .map_err(|error| LinkError::Formula { place: place.clone(), error })?;
+        let condition = Condition::compile(condition, &variables).map_err(|error| LinkError::Formula {
+            place: place.clone(),
+            begin: 0,
+            error,
+        })?;
         is_entered[to] |= from != to;
         states[from].transitions.push((condition, to));
     }
@@ -233,7 +236,9 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
             let number = remembered.iter().position(|known| *known == number.trim()).ok_or_else(|| {
                 text(&place, format!("sets `{}`; remembered are {}", number.trim(), remembered.join(", ")))
             })?;
-            states[state].settings.push((number, formula(&place, value.trim(), &variables)?));
+            states[state]
+                .settings
+                .push((number, formula_within(&place, settings, value.trim(), &variables)?));
         }
     }
     let unknowns = VARIABLES.len() + remembered.len();

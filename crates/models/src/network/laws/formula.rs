@@ -117,7 +117,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
             (true, false) => (Kind::Energy, "energy", energy),
             _ => {
                 let what = "stands for one formula: write it, or `energy`, and not both".to_owned();
-                return Err(LinkError::Text { place: "push".to_owned(), what });
+                return Err(LinkError::text("push", what));
             }
         };
         let variables: Vec<&str> = VARIABLES.into_iter().chain(names).collect();
@@ -125,7 +125,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
         if kind == Kind::Energy && (formula.depends_on(1) || formula.depends_on(2)) {
             let what =
                 "depends on D_before or V: an energy is of D alone, dampers belong to a `push`".to_owned();
-            return Err(LinkError::Text { place: "energy".to_owned(), what });
+            return Err(LinkError::text("energy", what));
         }
         let (formula, constants) = (Arc::new(formula), Arguments::new(0.0, constants));
         Ok(Box::new(OneByOne(Written { formula, kind, constants, timestep: making.timestep })))

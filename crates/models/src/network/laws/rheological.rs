@@ -72,7 +72,7 @@ fn read(making: &Making) -> Result<Rheological, LinkError> {
     };
     let network = rheology::read(making.values.text("network"), &number).map_err(|error| {
         let what = format!("cannot be built: {}", error.without_place());
-        LinkError::Part { place: "network".to_owned(), what, part: error.span() }
+        LinkError::Text { place: "network".to_owned(), what, part: error.span() }
     })?;
     Ok(Rheological { network, timestep: making.timestep })
 }

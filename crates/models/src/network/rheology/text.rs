@@ -54,8 +54,8 @@ impl RheologyError {
 
     /// The message without the place, for those who show it.
     pub fn without_place(&self) -> String {
-        let Some(span) = self.span() else { return self.to_string() };
-        self.to_string().replace(&format!(" (at {span})"), "").replace(&format!(" at {span}"), "")
+        let message = self.to_string();
+        self.span().map_or_else(|| message.clone(), |span| span.taken_out_of(&message))
     }
 }
 
