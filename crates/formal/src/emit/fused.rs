@@ -299,7 +299,7 @@ impl Weighted {
             places.zip(names).map(|(place, (_, name))| (place.value, name.clone())).collect();
         let mut writer = Writer::new(&self.graph, &lowered, texts);
         let steps: Vec<_> = lowered.steps.iter().flatten().collect();
-        let body = writer.body(&needed(&steps, &lowered.outputs))?;
+        let body = writer.body(&needed(&steps, &lowered.outputs), &[])?;
         let results: Vec<String> = lowered
             .outputs
             .iter()

@@ -250,7 +250,7 @@ impl Functions<'_> {
         let mut writer = self.writer(graph, &lowered);
         let steps: Vec<&Step> = lowered.steps.iter().flatten().collect();
         let steps = needed(&steps, &lowered.outputs);
-        let body = writer.body(&steps)?;
+        let body = writer.body(&steps, &[])?;
         let result = writer.read(lowered.outputs[0], lowered.sizes[lowered.outputs[0].value]);
         Ok(finished(&body, &format!("        {result}\n"), &["F"]))
     }
@@ -288,7 +288,7 @@ impl Functions<'_> {
             .collect();
         kept.sort_unstable();
         kept.dedup();
-        let at = writer.body(&first)?;
+        let at = writer.body(&first, &kept)?;
         let names: Vec<(String, usize)> =
             kept.iter().map(|value| (writer.texts[value].clone(), lowered.sizes[*value])).collect();
         let type_of = |size: usize| match size {
@@ -310,7 +310,7 @@ impl Functions<'_> {
             writer.texts.insert(*value, format!("point.{name}"));
         }
         let mut bodies = lowered.outputs.iter().zip(["dF.columns[0].x", "g_a.x"]).map(|(output, like)| {
-            let body = writer.body(&needed(&second, &[*output]))?;
+            let body = writer.body(&needed(&second, &[*output]), &[])?;
             let result = writer.read(*output, lowered.sizes[output.value]);
             let by_value: &[&str] = if like.starts_with("dF") { &["dF"] } else { &[] };
             Ok(finished_like(&body, &format!("        {result}\n"), by_value, like))
@@ -376,11 +376,15 @@ pub(super) fn needed<'l>(steps: &[&'l Step], outputs: &[Place]) -> Vec<&'l Step>
     kept
 }
 
-/// Products `u vᵀ` among the steps that one step reads, which scales them, and of what they are.
-fn scaled_outers(steps: &[&Step], outputs: &[Place]) -> HashMap<usize, [Place; 2]> {
+/// Products `u vᵀ` among the steps that one step reads, which scales them, and of what they are; what is read later, by other
+/// bodies, is none.
+fn scaled_outers(steps: &[&Step], outputs: &[Place], read_later: &[usize]) -> HashMap<usize, [Place; 2]> {
     let mut reads: HashMap<usize, usize> = HashMap::new();
     for place in steps.iter().flat_map(|step| step.operands.iter().flatten()).chain(outputs) {
         *reads.entry(place.value).or_default() += 1;
+    }
+    for value in read_later {
+        *reads.entry(*value).or_default() += 1;
     }
     let scaled = |step: &Step| match (step.code, step.operands) {
         (Code::Scale | Code::ScaleAdd, [_, Some(a), ..]) => vec![a],
@@ -439,9 +443,10 @@ impl<'l> Writer<'l> {
         }
     }
 
-    pub fn body(&mut self, steps: &[&Step]) -> Result<String, NoKernel> {
+    /// Lines of steps; values of `read_later` are read by other bodies too.
+    pub fn body(&mut self, steps: &[&Step], read_later: &[usize]) -> Result<String, NoKernel> {
         let mut out = String::new();
-        self.outers = scaled_outers(steps, &self.lowered.outputs);
+        self.outers = scaled_outers(steps, &self.lowered.outputs, read_later);
         for step in steps {
             if self.outers.contains_key(&step.out.value) {
                 continue;
