@@ -71,6 +71,9 @@ fn page(kind: &str, entries: &[Value]) -> String {
     for entry in entries {
         page += &format!("\n## `{}`\n\n{}\n\n", text(&entry["name"]), sentence(&text(&entry["summary"])));
         // laws are printed as the program reads them
+        if let Some(letters) = entry["letters"].as_str() {
+            page += &format!("As text, with {letters}:\n\n");
+        }
         if let Some(written) = entry["text"].as_str() {
             page += &format!("```text\n{written}\n```\n\n");
         }
@@ -113,10 +116,10 @@ mod tests {
         let entry = serde_json::json!({
             "name": "plane", "summary": "everything below |z|", "source": "analytic",
             "parameters": [{"name": "point", "summary": "a | b", "unit": "m", "expected": "a vector", "default": null}],
-            "text": "z; z = 1",
+            "text": "z; z = 1", "letters": "`z` for the height",
         });
         let page = page("contact_shapes", &[entry]);
-        let expected = "# Contact shapes\n\n## `plane`\n\nEverything below |z|.\n\n```text\nz; z = 1\n```\n\nSource: Analytic.\n\n\
+        let expected = "# Contact shapes\n\n## `plane`\n\nEverything below |z|.\n\nAs text, with `z` for the height:\n\n```text\nz; z = 1\n```\n\nSource: Analytic.\n\n\
                         | parameter | what | accepted | default |\n|---|---|---|---|\n| `point` | a \\| b | a vector |  |\n";
         assert_eq!(page, expected);
     }

@@ -277,6 +277,18 @@ fn moduli_of(page: &Page) -> Option<Lame> {
     WrittenLaw::find(&page.name)?.small_strain().ok()
 }
 
+/// What letters the text of a material has for its parameters.
+fn letters_of(page: &Page) -> &'static str {
+    let has = |name: &str| page.parameters.iter().any(|parameter| parameter.name == name);
+    if has("alpha") {
+        "two of up to three terms, `mu1` and `a1` for the first of `mu` and `alpha`, `k` for `bulk_modulus`"
+    } else if has("bulk_modulus") {
+        "`k` for `bulk_modulus`"
+    } else {
+        "`lambda` and `mu` for Lamé's moduli"
+    }
+}
+
 fn to_json(page: &Page) -> Value {
     let parameters: Vec<Value> = page
         .parameters
@@ -298,11 +310,12 @@ fn to_json(page: &Page) -> Value {
         "source": page.source,
         "parameters": parameters,
     });
-    // the materials that are compiled ahead are written too; their numbers are called as everyone calls them
-    let of_material =
-        || WrittenLaw::find(&page.name).filter(|_| page.kind == "material").map(WrittenLaw::formula);
-    if let Some(text) = page.text.clone().or_else(of_material) {
+    let of_material = WrittenLaw::find(&page.name).filter(|_| page.kind == "material");
+    if let Some(text) = page.text.clone().or_else(|| of_material.map(WrittenLaw::formula)) {
         document["text"] = json!(text);
+    }
+    if of_material.is_some() {
+        document["letters"] = json!(letters_of(page));
     }
     if let Some(entry) = souple_models::network::LINKS.find(&page.name).ok().filter(|_| page.kind == "link") {
         document["state_dimension"] = json!(souple_models::network::state_dimension(entry));
