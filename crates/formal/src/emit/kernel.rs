@@ -618,3 +618,23 @@ impl<'l> Writer<'l> {
         Ok(Some(text))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A product of vectors that one step scales is written where it is scaled, but not where another body reads it too.
+    #[test]
+    fn products_that_are_kept_have_names() {
+        let place = |value| Place { value, offset: 0 };
+        let step = |code, out, operands: [usize; 2]| {
+            let [a, b] = operands.map(|value| Some(place(value)));
+            Step { code, entries: 9, out: place(out), operands: [a, b, None, None, None] }
+        };
+        let steps = [step(Code::Outer, 2, [0, 1]), step(Code::Scale, 4, [3, 2])];
+        let steps: Vec<&Step> = steps.iter().collect();
+        let written = |read_later: &[usize]| scaled_outers(&steps, &[], read_later);
+        assert_eq!(written(&[4]), HashMap::from([(2, [place(0), place(1)])]));
+        assert!(written(&[2, 4]).is_empty());
+    }
+}

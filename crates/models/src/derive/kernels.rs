@@ -51,7 +51,7 @@ pub fn element_kernel(
     write_element(&data, &law.continued(), &heading)
 }
 
-/// Whether its numbers are Lamé's, for which there is a type.
+/// Whether its numbers are called as Lamé's, for which there is a type; whatever they mean, it has fields for them.
 fn has_lame_moduli(law: &EnergyLaw) -> bool {
     let mut names: Vec<&str> = law.parameters.iter().map(|(name, _)| name.as_str()).collect();
     names.sort_unstable();
