@@ -160,7 +160,11 @@ fn laws_are_described_with_their_moduli() {
     assert!(told.stdout.contains(line), "{told:#?}");
     let pages = souple(["describe", "neo_hookean", "--json"]).ends(0).json();
     let law = pages.as_array().and_then(|pages| pages.iter().find(|page| page["kind"] == "law"));
-    let moduli = &law.expect("the law")["small_strain"];
+    let law = law.expect("the law");
+    for key in ["energy", "stress", "differential", "stiffness"] {
+        assert!(!law[key].is_null(), "`{key}` is not in {law}");
+    }
+    let moduli = &law["small_strain"];
     let number = |key: &str| moduli[key].as_f64().expect("a number");
     // the tangent at rest is derived by machine, in doubles
     assert!((number("youngs_modulus") / (80e3 / 3.0) - 1.0).abs() < 1e-12, "{moduli}");

@@ -193,7 +193,9 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     if arguments.json {
         let described = found.iter().map(|page| {
             let mut document = to_json(page);
-            for (key, step) in ["energy", "stress", "differential", "stiffness"].into_iter().zip(steps_of(page)) {
+            for (key, step) in
+                ["energy", "stress", "differential", "stiffness"].into_iter().zip(steps_of(page))
+            {
                 document[key] = step.to_json();
             }
             if let Some(moduli) = moduli_of(page) {
