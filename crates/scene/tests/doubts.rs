@@ -315,7 +315,7 @@ fn faults_in_texts_point_at_their_characters() {
             "transitions = { \"a -> b\" = \"D < 1\" }",
             "entries = { b = \"k = 1\" }",
             "memory = { k = \"0\" }",
-            "parameters = { c = 1 }",
+            "parameters = { c = \"1\" }",
         ];
         let name = |key: &str| key.split(' ').next().map(str::to_owned);
         let keys = keys.map(|known| if name(known) == name(key) { key } else { known });
