@@ -136,7 +136,7 @@ pub enum LinkError {
         place: String,
         /// Where the formula begins in the text there [bytes].
         begin: usize,
-        error: ParseError,
+        error: Box<ParseError>,
     },
     #[error("`{place}` {what}")]
     Text {

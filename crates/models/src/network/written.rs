@@ -263,7 +263,7 @@ pub fn formula_within(
     Formula::compile(piece, variables).map_err(|error| LinkError::Formula {
         place: place.to_owned(),
         begin: begin_within(text, piece),
-        error,
+        error: Box::new(error),
     })
 }
 

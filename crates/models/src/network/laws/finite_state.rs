@@ -217,7 +217,7 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
         let condition = Condition::compile(condition, &variables).map_err(|error| LinkError::Formula {
             place: place.clone(),
             begin: 0,
-            error,
+            error: Box::new(error),
         })?;
         is_entered[to] |= from != to;
         states[from].transitions.push((condition, to));
