@@ -9,24 +9,52 @@ use crate::TICK;
 pub struct Pace {
     period: Duration,
     next: Instant,
+    awake: Awake,
 }
 
-/// The end of a wait is spent awake: sleeping ends late by about so much.
-const AWAKE: Duration = Duration::from_micros(80);
+/// The end of a wait that is spent awake, since sleeping ends late: as long as all sleeps but few of this machine are late, which
+/// is learnt from one to the next, as a quantile `m` of their lateness `l`: `m <- m + GAIN (SHARE - [l <= m])`.
+#[derive(Debug)]
+struct Awake(Duration);
+
+/// Of sleeps that end while there is time.
+const SHARE: f64 = 0.9995;
+/// What the wait is longer by, nearly, for a sleep that ended too late.
+const GAIN: Duration = Duration::from_micros(100);
+/// At least, as most sleeps are late by half of it; and at most, so that others have the processor for more than half of the time.
+const LEAST_AWAKE: Duration = Duration::from_micros(80);
+const MOST_AWAKE: Duration = Duration::from_micros(400);
+
+impl Awake {
+    /// Takes note of how late a sleep has ended.
+    fn learn(&mut self, late: Duration) {
+        let is_within = late <= self.0;
+        let wanted = if is_within {
+            self.0.saturating_sub(GAIN.mul_f64(1.0 - SHARE))
+        } else {
+            self.0 + GAIN.mul_f64(SHARE)
+        };
+        self.0 = wanted.clamp(LEAST_AWAKE, MOST_AWAKE);
+    }
+}
+
 /// A tick that begins so much too late leaves those out that it has missed.
 const GIVEN_UP: u32 = 3;
 
 impl Pace {
     pub fn new(period: Duration) -> Self {
-        Self { period, next: Instant::now() + period }
+        Self { period, next: Instant::now() + period, awake: Awake(LEAST_AWAKE) }
     }
 
     /// Waits for the next date; how late it is, and how many dates were left out before it.
     pub fn wait(&mut self) -> (Duration, u32) {
         loop {
-            let left = self.next.saturating_duration_since(Instant::now());
-            if left > AWAKE {
-                std::thread::sleep(left.saturating_sub(AWAKE));
+            let now = Instant::now();
+            let left = self.next.saturating_duration_since(now);
+            if left > self.awake.0 {
+                let sleep = left - self.awake.0;
+                std::thread::sleep(sleep);
+                self.awake.learn(now.elapsed().saturating_sub(sleep));
             } else if left.is_zero() {
                 break;
             } else {
@@ -156,6 +184,28 @@ mod tests {
         assert!((histogram.share_within(1.2e-3) - 0.999).abs() < 1e-12);
         assert_eq!(histogram.share_within(1.0e-3), 0.0);
         assert_eq!(histogram.bins().iter().map(|(_, count)| count).sum::<u64>(), 1000);
+    }
+
+    /// Where one sleep of a thousand is late, and one in ten thousand later still, waits are awake for the first but not for the other; where
+    /// none is, they soon are so no more.
+    #[test]
+    fn waits_are_awake_for_all_sleeps_but_few() {
+        let mut awake = Awake(LEAST_AWAKE);
+        let late = |tick: u32| match tick {
+            _ if tick % 10_000 == 0 => Duration::from_micros(350),
+            _ if tick % 1_000 == 0 => Duration::from_micros(150),
+            _ => Duration::from_micros(20),
+        };
+        let mut exceeded = 0;
+        for tick in 1..=100_000 {
+            exceeded += u32::from(late(tick) > awake.0);
+            awake.learn(late(tick));
+        }
+        // the mean of a bounded sum: 100,000 (1 - SHARE) of them, and the span of the estimate over the gain
+        assert!(exceeded <= 50 + 4, "{exceeded}");
+        // back by GAIN (1 - SHARE) = 50 ns a tick
+        (0..6_400).for_each(|_| awake.learn(Duration::ZERO));
+        assert_eq!(awake.0, LEAST_AWAKE);
     }
 
     /// No date comes too soon, and dates do not drift: after `n` waits `n` periods have passed, whatever each took.

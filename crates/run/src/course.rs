@@ -128,7 +128,9 @@ impl Course {
                 // what was done to a live world after its last step
                 dues.make(session)?;
             }
-            if last || watched.is_err() || options.hash_every.is_some_and(|every| step.is_multiple_of(every))
+            // by the date in the world, so that runs from snapshots stop to write where the whole run does
+            let date = session.world.state().period;
+            if last || watched.is_err() || options.hash_every.is_some_and(|every| date.is_multiple_of(every))
             {
                 session.push_hash();
             }
@@ -136,7 +138,7 @@ impl Course {
             let wall_seconds = session.clock.elapsed().as_secs_f64();
             let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
             let stops = watch(&progress) == Control::Stop && !last;
-            let is_due = |every: u64| last || stops || watched.is_err() || step.is_multiple_of(every);
+            let is_due = |every: u64| last || stops || watched.is_err() || date.is_multiple_of(every);
             keep_state(session, folder.as_mut().filter(|_| options.snapshot_every.is_some_and(is_due)))?;
             session.around.write += write_clock.elapsed().as_secs_f64();
             watched?;

@@ -6,6 +6,7 @@
 use std::cell::RefCell;
 use std::fmt;
 
+use crate::overrides;
 use crate::source::{Place, Sources};
 
 /// The kind of a fault, for programs.
@@ -142,6 +143,8 @@ pub struct Diagnostic {
     pub message: String,
     /// The line of the file with the place underlined.
     picture: String,
+    /// Settings of the command line of parts of what is underlined, whose text says something else.
+    settings: Vec<String>,
 }
 
 /// All that is wrong with a scene.
@@ -156,7 +159,11 @@ impl Diagnostic {
         let has_place = site.place.end > site.place.start;
         let value = value.unwrap_or_else(|| sources.excerpt(site.place));
         let picture = if has_place { sources.underlined(site.place) } else { String::new() };
-        Self { code, file, line, column, path: site.path, value, expected, message, picture }
+        let settings = match overrides::is_one(sources.get(site.place.source)) {
+            true => Vec::new(),
+            false => overrides::within(&site.path, sources).map(str::to_owned).collect(),
+        };
+        Self { code, file, line, column, path: site.path, value, expected, message, picture, settings }
     }
 
     pub fn to_json(&self) -> serde_json::Value {
@@ -169,6 +176,7 @@ impl Diagnostic {
             "value": self.value,
             "expected": self.expected,
             "message": self.message,
+            "settings": self.settings,
         })
     }
 }
@@ -184,6 +192,9 @@ impl fmt::Display for Diagnostic {
         for (index, line) in self.picture.lines().enumerate() {
             let number = if index == 0 { gutter.clone() } else { " ".repeat(gutter.len()) };
             write!(f, "\n  {number} | {line}")?;
+        }
+        for setting in &self.settings {
+            write!(f, "\n  {} = with --set {setting}", " ".repeat(gutter.len()))?;
         }
         if !self.expected.is_empty() {
             write!(f, "\n  {} = expected {}", " ".repeat(gutter.len()), self.expected)?;

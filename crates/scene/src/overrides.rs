@@ -14,6 +14,24 @@ use crate::source::{Place, Source, Sources};
 use crate::spec::SCENE;
 use crate::spec::world::{DEFAULT_STEPPER, DEFAULT_SYSTEM};
 
+/// The name of the text of a setting.
+const NAME: &str = "--set";
+
+/// Whether a text is a setting of the command line.
+pub fn is_one(source: &Source) -> bool {
+    source.name == NAME
+}
+
+/// The settings of parts of what a path leads to, or of it.
+pub fn within<'a>(path: &str, sources: &'a Sources) -> impl Iterator<Item = &'a str> {
+    let is_within = move |text: &&str| {
+        let set = text.split('=').next().unwrap_or_default().trim();
+        set.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
+    let settings = sources.iter().filter(|source| is_one(source)).map(|source| &*source.text);
+    settings.filter(is_within)
+}
+
 /// A step of a path.
 enum Step<'a> {
     Key(&'a str),
@@ -23,7 +41,7 @@ enum Step<'a> {
 /// Sets what `overrides` (`path=value`) say in a document.
 pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, log: &Log) {
     for text in overrides {
-        let source = Source { name: "--set".to_owned(), folder: PathBuf::new(), text: text.clone() };
+        let source = Source { name: NAME.to_owned(), folder: PathBuf::new(), text: text.clone() };
         let source = sources.add(source);
         let whole = Place { source, start: 0, end: text.len() };
         let Some((path, value)) = text.split_once('=') else {

@@ -298,6 +298,13 @@ impl<'a> Reader<'a> {
         self.read(name, |value, key, expected| value.formula(key.unit, variables, expected))
     }
 
+    /// The same, measured in a unit that depends on other keys.
+    pub fn formula_in(&self, name: &str, unit: &'static str) -> Option<Formula> {
+        let Shape::Formula(variables) = self.key(name).shape else { unreachable!("`{name}` is no formula") };
+        let expected = self.key(name).in_unit(unit).expected();
+        self.read(name, |value, _, _| value.formula(unit, variables, &expected))
+    }
+
     pub fn maybe_vector_formula(&self, name: &str) -> Option<[Formula; 3]> {
         let Shape::VectorFormula(variables) = self.key(name).shape else {
             unreachable!("`{name}` is no formula")

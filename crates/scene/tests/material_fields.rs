@@ -37,8 +37,9 @@ fn cells_have_numbers_of_their_own() {
     let folder = folder();
     std::fs::write(folder.join("densities.txt"), "1000 2000\n3000\n\n4000\n").expect("a file");
     let formula = format!("{BAR}[bodies.bar.material_fields]\ndensity = {{ value = \"500 + 4000 * x\" }}\n");
+    let quantity = format!("{BAR}[bodies.bar.material_fields]\ndensity = {{ value = \"2.5 g/cm^3\" }}\n");
     let file = format!("{BAR}[bodies.bar.material_fields]\ndensity = {{ file = \"densities.txt\" }}\n");
-    for text in [&formula, &file] {
+    for text in [&formula, &quantity, &file] {
         let measured = mass(text, &folder).unwrap();
         assert!((measured - 2500.0).abs() < 1e-9, "{measured}");
     }
@@ -63,6 +64,7 @@ fn wrong_fields_are_refused() {
         ("density = { file = \"none.txt\" }", "`none.txt` cannot be read"),
         ("density = { value = \"1000 - 2000 * x\" }", "`density` of cell 2 is"),
         ("poissons_ratio = { value = \"x\" }", "`poissons_ratio` of cell 2 is"),
+        ("density = { value = \"2 kPa\" }", "`2 kPa` is a pressure"),
         ("colour = { value = \"x\" }", "`colour` is no number of the material `linear`"),
         ("density = { value = \"1000\", file = \"three.txt\" }", "by a formula or by a file"),
     ] {

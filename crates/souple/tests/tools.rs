@@ -279,6 +279,32 @@ fn studies_are_swept() {
     );
 }
 
+/// A fit writes the curve it found, again over its own, and over nothing else; a curve that is not there is told as one.
+#[test]
+fn fits_write_over_their_own_alone() {
+    let folder = Folder::new("fit_out");
+    let study = common::scenes().join("rheometer/identify.toml");
+    let sweep =
+        |out: &str| souple(["sweep", &study.display().to_string(), "--quiet", "--out", &folder.at(out)]);
+    sweep("found.csv").ends(0);
+    sweep("found.csv").ends(0);
+    for (name, text) in
+        [("notes.txt", "do not lose, this, text\n"), ("study.sqlite", "SQLite format 3\0\x10")]
+    {
+        folder.write(name, text);
+        let refused = sweep(name).ends(2);
+        assert!(refused.stderr.contains("no curve of a fit; expected a new file"), "{}", refused.stderr);
+        assert_eq!(std::fs::read_to_string(folder.at(name)).unwrap(), text);
+    }
+    let scene = common::scenes().join("rheometer").display().to_string();
+    let missing = format!(
+        "scene = {scene:?}\n[fit]\nprobe = \"pull.x\"\ncurve = \"nope.csv\"\n[fit.values]\na = {{ start = 1, min = 0, max = 2 }}\n"
+    );
+    folder.write("missing.toml", missing);
+    let refused = souple_in(folder.path(), ["sweep", "missing.toml"]).ends(2);
+    assert!(refused.stderr.contains("`fit.curve` is nope.csv: "), "{}", refused.stderr);
+}
+
 /// Without a tolerance a comparison tells; with one it judges.
 #[test]
 fn comparisons_judge_by_a_tolerance() {

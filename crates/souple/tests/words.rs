@@ -131,6 +131,11 @@ fn settings_are_to_blame_for_what_they_make() {
         let answer = souple(["check", &scene, "--set", setting]).ends(2);
         assert!(answer.stderr.starts_with("--set:1:") && answer.stderr.contains(words), "{answer:#?}");
     }
+    // what is found behind the reading is shown where the scene has the whole, with the setting
+    let scene_of_levels = common::scenes().join("octree_cube").display().to_string();
+    let setting = "bodies.cube.octree.fixed=\"99\"";
+    let answer = souple(["check", &scene_of_levels, "--set", setting]).ends(2);
+    assert!(answer.stderr.contains(&format!("= with --set {setting}")), "{answer:#?}");
     let answer = souple(["check", &scene, "--set", "world.period=1e-300"]).ends(2);
     assert!(answer.stderr.contains("periods of 1e-300 s"), "{answer:#?}");
 }

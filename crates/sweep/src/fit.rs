@@ -92,7 +92,14 @@ impl Fit {
             None => Err(SweepError::value(format!("fit.{key}"), "missing", expected)),
         };
         let curve_file: PathBuf = folder.join(text("curve", "a file of two columns with commas")?);
-        let mut curve = curve(&curve_file, &read(&curve_file)?)?;
+        let text_of_curve = read(&curve_file).map_err(|error| match error {
+            SweepError::Read { path, source } => {
+                let found = format!("{}: {source}", path.display());
+                SweepError::value("fit.curve", found, "a text file of two columns with commas")
+            }
+            other => other,
+        })?;
+        let mut curve = curve(&curve_file, &text_of_curve)?;
         let over = match table.get("over") {
             None => None,
             Some(_) => Some(Wanted::read("fit.over", &text("over", "a probe of the scene")?)),
@@ -221,9 +228,12 @@ impl Unknown {
 
     fn value(&self, place: f64) -> f64 {
         let [low, high] = self.bounds;
-        // to the bit, so that a value at a bound is known as such
+        // to the bit, so that a value at a bound is known as such, and the first run is the one that was asked for
         if place >= 1.0 {
             return high;
+        }
+        if place == self.place(self.start) {
+            return self.start;
         }
         let value =
             if self.is_logarithmic() { low * (high / low).powf(place) } else { low + place * (high - low) };
@@ -267,7 +277,8 @@ fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), Swe
 /// Two columns with commas, in the order of the file; a first line that is no numbers names them.
 fn curve(path: &Path, text: &str) -> Result<Vec<[f64; 2]>, SweepError> {
     let mut points: Vec<[f64; 2]> = Vec::new();
-    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    for (place, (number, line)) in lines.enumerate() {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         let numbers: Vec<f64> = cells
             .iter()
@@ -276,7 +287,7 @@ fn curve(path: &Path, text: &str) -> Result<Vec<[f64; 2]>, SweepError> {
             .collect();
         match numbers[..] {
             [x, y] if cells.len() == 2 => points.push([x, y]),
-            _ if points.is_empty() && numbers.is_empty() && cells.len() == 2 => {}
+            _ if place == 0 && numbers.is_empty() && cells.len() == 2 => {}
             _ => {
                 let place = format!("{}, line {}", path.display(), number + 1);
                 return Err(SweepError::value(place, line.trim(), "two finite numbers with a comma"));
@@ -466,8 +477,9 @@ mod tests {
     fn places_and_values() {
         for bounds in [[1.0, 1e6], [-3.0, 5.0]] {
             let unknown = Unknown { path: "a".to_owned(), unit: String::new(), start: 2.0, bounds };
-            assert!((unknown.value(unknown.place(2.0)) - 2.0).abs() < 1e-12);
+            assert!((unknown.value(unknown.place(1.5)) - 1.5).abs() < 1e-12);
             assert_eq!([unknown.value(0.0), unknown.value(1.0)], bounds);
+            assert_eq!(unknown.value(unknown.place(2.0)), 2.0);
         }
         // 3 (7/3)^1 is no 7 to the bit
         for high in (4..100).map(f64::from) {
@@ -529,6 +541,7 @@ mod tests {
                 "`fit.curve` is a curve that goes back from 2e0 to 1.5e0; expected places that go one way",
             ),
             ("values.k = { start = 1, min = 0, max = 3 }\n", "t,y\n1,x\n", "line 2` is 1,x"),
+            ("values.k = { start = 1, min = 0, max = 3 }\n", "t,y\ns,N\n1,2\n", "line 2` is s,N"),
             ("values.k = { start = 1, min = 0, max = 3 }\n", "t,y\n", "no points"),
             ("range = 1\n", "1,2\n", "`fit.range` is unknown"),
         ] {

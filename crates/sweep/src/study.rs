@@ -111,10 +111,19 @@ impl Study {
                 return Err(SweepError::value("steps", other.to_string(), "a whole number above 0"));
             }
         };
+        let settings = settings(&document)?;
+        let sought = |setting: &&String| {
+            let path = setting.split('=').next().unwrap_or_default().trim();
+            fit.iter().flat_map(|fit| &fit.unknowns).any(|unknown| unknown.path == path)
+        };
+        if let Some(setting) = settings.iter().find(sought) {
+            let found = format!("`{setting}`, of what `fit.values` looks for");
+            return Err(SweepError::value("settings", found, "settings of other values"));
+        }
         Ok(Self {
             title: text_of(&document, "title")?.unwrap_or_default().to_owned(),
             scene: if scene.is_dir() { scene.join("scene.toml") } else { scene },
-            settings: settings(&document)?,
+            settings,
             steps,
             runs,
             graphs: graphs(&document)?,

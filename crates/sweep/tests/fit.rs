@@ -43,7 +43,14 @@ const CURVE: &str = "0.1, 1\n0.2, 2\n";
 #[test]
 fn what_cannot_be_sought_is_named() {
     let viscosity = "networks.sample.links[0].law.viscosity\" = { start = 20, min = 1, max = 1e4 }";
+    let doubled = format!("settings = [\"{} = 3\"]\n[fit]", viscosity.split('"').next().unwrap());
     for (from, to, curve, words) in [
+        (
+            "[fit]",
+            &*doubled,
+            CURVE,
+            "viscosity = 3`, of what `fit.values` looks for; expected settings of other",
+        ),
         ("pull.x", "push.x", CURVE, "`fit.probe` is push; expected a probe: "),
         ("pull.x", "pull", CURVE, "`fit.probe` is pull, a vector; expected a component of it: pull.x"),
         ("\"pull.x\"", "\"pull.x\"\nover = \"way\"", CURVE, "`fit.over` is way; expected a probe: "),

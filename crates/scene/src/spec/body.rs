@@ -272,7 +272,8 @@ pub enum FieldValues {
 }
 
 impl MaterialField {
-    fn read(parameter: String, reader: &Reader) -> Option<Self> {
+    /// `unit` is that of the parameter.
+    fn read(parameter: String, unit: &'static str, reader: &Reader) -> Option<Self> {
         if reader.has("value") == reader.has("file") {
             let message = format!("`{parameter}` is told by a formula or by a file");
             reader.log().add(Code::Conflict, &reader.site(), message, "`value` or `file`");
@@ -280,7 +281,7 @@ impl MaterialField {
         }
         let file =
             || Some(FieldValues::File { name: reader.maybe_text("file")?, site: reader.site_of("file") });
-        let values = reader.maybe_formula("value").map(FieldValues::Formula).or_else(file)?;
+        let values = reader.formula_in("value", unit).map(FieldValues::Formula).or_else(file)?;
         Some(Self { parameter, values, site: reader.site() })
     }
 }
@@ -385,20 +386,25 @@ impl Body {
             region: Region::read(&part, "region"),
             material: read_material(&part),
         };
+        let material = read_material(reader);
+        let unit_of = |parameter: &str| {
+            let of_material = material.iter().flat_map(|chosen| chosen.entry.parameters);
+            of_material.clone().find(|known| known.name == parameter).map_or("", |known| known.unit)
+        };
+        let material_fields = reader.named("material_fields").into_iter().filter_map(|(name, part)| {
+            let unit = unit_of(&name);
+            MaterialField::read(name, unit, &part)
+        });
         Self {
             name,
             mesh: MeshSpec::read(reader),
-            material: read_material(reader),
+            material_fields: material_fields.collect(),
+            material,
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             axes: reader.table("material_axes").and_then(|table| AxesSpec::read(&table)),
-            material_fields: reader
-                .named("material_fields")
-                .into_iter()
-                .filter_map(|(name, part)| MaterialField::read(name, &part))
-                .collect(),
             regions: reader.named("regions").into_iter().map(region).collect(),
             // lumped, the mass of frames would swing in motions that move no matter
             mass: match reader.choice("mass") {

@@ -212,7 +212,7 @@ impl MotionSpec {
             None
         };
         if reader.has("formula") {
-            if reader.has("times") || reader.has("offsets") {
+            if ["times", "offsets", "interpolation"].into_iter().any(|key| reader.has(key)) {
                 return refuse("a motion has both a formula and key frames".to_owned(), "one of them");
             }
             return reader.maybe_vector_formula("formula").map(Self::Formula);

@@ -128,10 +128,10 @@ fn print_divergence(divergence: &Divergence, recording: &Recording) {
     }
 }
 
-/// The distance at which all recorded hashes are met again.
+/// The number of which all recorded periods with hashes are multiples; first and last have theirs anyway.
 fn hash_distance(recording: &Recording) -> Option<u64> {
-    let periods: Vec<u64> = recording.hashes.iter().map(|hashed| hashed.period).collect();
-    let distance = periods.windows(2).map(|pair| pair[1].abs_diff(pair[0])).fold(0, gcd);
+    let between = recording.hashes.get(1..recording.hashes.len().saturating_sub(1))?;
+    let distance = between.iter().map(|hashed| hashed.period).fold(0, gcd);
     (distance > 0).then_some(distance)
 }
 

@@ -17,7 +17,8 @@ use super::{End, Refusal, interruption, print_json, print_line, print_note};
 pub struct Arguments {
     /// A study: a TOML file with a scene and what varies
     study: PathBuf,
-    /// SQLite file of the results; beside the study and named like it where left out. Table and graphs go beside it
+    /// SQLite file of the results, beside which table and graphs go, or of a fit the CSV file of the curve; beside the study and
+    /// named like it where left out
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Runs at once; as many as the machine has cores where left out
@@ -131,6 +132,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     }
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("fit.csv"));
     keep_inputs(&out, [&arguments.study, &study.scene, &fit.curve_file])?;
+    keep_others(&out)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
@@ -145,7 +147,7 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     let column =
         |name: &str, index: usize| Column::new(name, found.curve.iter().map(|point| point[index]).collect());
     let abscissa = fit.over.as_ref().map_or("time [s]", |over| over.name.as_str());
-    let columns = [column(abscissa, 0), column("measured", 1), column(&fit.probe.name, 2)];
+    let columns = [column(abscissa, 0), column(MEASURED, 1), column(&fit.probe.name, 2)];
     souple_io::write_csv(&out, &columns)?;
     let of_values = fit.unknowns.iter().zip(&found.values);
     let alike: Vec<&str> = found.alike.iter().map(|index| fit.unknowns[*index].path.as_str()).collect();
@@ -223,6 +225,29 @@ fn keep_inputs(out: &Path, inputs: [&PathBuf; 3]) -> Result<(), Refusal> {
             Err(Refusal::request("option", found, "a file that the study does not read", message))
         }
     }
+}
+
+/// The name of the second column of what a fit writes.
+const MEASURED: &str = "measured";
+
+/// Refuses to write over what no fit has written, among it the results of other studies.
+fn keep_others(out: &Path) -> Result<(), Refusal> {
+    use std::io::Read as _;
+    let Ok(file) = std::fs::File::open(out) else { return Ok(()) };
+    let mut head = Vec::new();
+    // names of probes are no longer; what cannot be read cannot be written, which is told then
+    if file.take(4096).read_to_end(&mut head).is_err() || head.is_empty() {
+        return Ok(());
+    }
+    let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    if String::from_utf8_lossy(line).contains(&format!(",{MEASURED},")) {
+        return Ok(());
+    }
+    let found = out.display().to_string();
+    let message = format!(
+        "{found} is there, and no curve of a fit; expected a new file in `--out`, or one that a fit has written"
+    );
+    Err(Refusal::request("option", found, "a new file, or one that a fit has written", message))
 }
 
 /// Columns under each other.

@@ -1,10 +1,10 @@
 //! Bars of tetrahedra and hexahedra: explicit steps, implicit steps, equilibrium.
 
-use super::timing::{Held, Timing, as_it_is, bend, median, scene, with_threads};
+use super::timing::{Held, Timing, as_it_is, bend, scene};
 use super::{Effort, Figure, value_of};
 
 /// Settings of the explicit benchmarks.
-fn explicit_settings(element: &str, cells: u32, period: &str) -> Vec<String> {
+pub fn explicit_settings(element: &str, cells: u32, period: &str) -> Vec<String> {
     vec![
         format!("world.period=\"{period}\""),
         "systems.main.stepper=\"symplectic_euler\"".to_owned(),
@@ -46,28 +46,16 @@ pub fn explicit(
     let (error, error_of) = check()?;
     let held = Held { error, error_of: error_of.to_owned(), baseline: Some(peer) };
     let settings = explicit_settings(element, 12, "10 us");
-    let timed = explicit_steps(&settings, effort).run()?;
-    Ok(timed.iter().map(|timed| timed.elements_per_second(name, &held)).collect())
-}
-
-/// Complete symplectic steps of the bent bar.
-fn explicit_steps(settings: &[String], effort: Effort) -> Timing<'_> {
-    Timing {
+    // complete symplectic steps of the bent bar
+    let timing = Timing {
         scene: "cantilever_dynamic",
-        settings,
+        settings: &settings,
         prepare: bend,
         warm_up: 0,
         samples: effort.choose(5, 30),
         steps_per_sample: 5,
-    }
-}
-
-/// Elements a second of the steps that [`explicit`] measures, by their median.
-pub fn explicit_elements_per_second(element: &str, threads: usize, effort: Effort) -> Result<f64, String> {
-    let settings = explicit_settings(element, 12, "10 us");
-    let timed = with_threads(threads, || explicit_steps(&settings, effort).sample(threads))??;
-    let (seconds, _) = median(timed.seconds);
-    Ok(timed.cells as f64 / seconds)
+    };
+    Ok(timing.run()?.iter().map(|timed| timed.elements_per_second(name, &held)).collect())
 }
 
 pub fn implicit_beam(name: &str, n: u32, peer: f64, effort: Effort) -> Result<Vec<Figure>, String> {

@@ -218,11 +218,26 @@ pub struct ForceTimes {
     pub derivatives: Vec<Vec3>,
     /// Derivative against central differences of the force.
     pub derivative_error: f64,
+    /// Of each sample, complete steps of what it is compared with.
+    pub steps: Timed,
 }
 
-/// Times force and derivative of the bar's material `samples` times each, in turn.
-pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Result<ForceTimes, String> {
+/// How forces and derivatives are timed, in turn.
+#[derive(Clone, Copy)]
+pub struct Sampling<'a> {
+    pub threads: usize,
+    pub samples: usize,
+    /// Evaluations of each sample, one after another: those of several find in the caches what they left there, as steps do.
+    pub in_a_row: usize,
+    /// Settings of the bar of which as many complete steps are timed in each turn, if any, so that both meet the same machine.
+    pub beside: Option<&'a [String]>,
+}
+
+/// Times force and derivative of the bar's material.
+pub fn force_times(settings: &[String], sampling: Sampling) -> Result<ForceTimes, String> {
+    let Sampling { threads, samples, in_a_row, beside } = sampling;
     with_threads(threads, || {
+        let mut other = beside.map(started).transpose()?;
         let scene = scene("cantilever_dynamic", settings)?;
         let cells = scene.bodies[0].mesh.cell_count();
         let mut world = scene.model.start(scene.state);
@@ -239,17 +254,26 @@ pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Resul
             let weights = TangentWeights { position: 1.0, velocity: 0.0 };
             let zeros = vec![Vec3::ZERO; delta.len()];
             let (mut forces, mut derivatives) = (zeros.clone(), zeros.clone());
-            let mut seconds = [Vec::new(), Vec::new()];
-            let mut processor = [Vec::new(), Vec::new()];
+            let mut seconds = [Vec::new(), Vec::new(), Vec::new()];
+            let mut processor = [Vec::new(), Vec::new(), Vec::new()];
             for _ in 0..samples + 1 {
-                forces.fill(Vec3::ZERO);
                 let clock = Clock::start();
-                force.add_force(&at, scratch, &mut forces);
-                clock.stop(&mut seconds[0], &mut processor[0], 1);
-                derivatives.fill(Vec3::ZERO);
+                if let Some(world) = &mut other {
+                    (0..in_a_row).try_for_each(|_| world.step().map_err(|error| error.to_string()))?;
+                }
+                clock.stop(&mut seconds[2], &mut processor[2], in_a_row);
                 let clock = Clock::start();
-                force.add_differential(&at, weights, &delta, scratch, &mut derivatives);
-                clock.stop(&mut seconds[1], &mut processor[1], 1);
+                for _ in 0..in_a_row {
+                    forces.fill(Vec3::ZERO);
+                    force.add_force(&at, scratch, &mut forces);
+                }
+                clock.stop(&mut seconds[0], &mut processor[0], in_a_row);
+                let clock = Clock::start();
+                for _ in 0..in_a_row {
+                    derivatives.fill(Vec3::ZERO);
+                    force.add_differential(&at, weights, &delta, scratch, &mut derivatives);
+                }
+                clock.stop(&mut seconds[1], &mut processor[1], in_a_row);
             }
             // (f(x + ε δ) - f(x - ε δ)) / 2ε
             let step = 1e-7;
@@ -263,18 +287,21 @@ pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Resul
             }
             let bytes = force.bytes() + force.scratch_bytes(scratch);
             // the first of each fills buffers
-            let [first, second] = seconds;
-            let [of_first, of_second] = processor;
-            let [force, derivative] =
-                [(first, of_first), (second, of_second)].map(|(mut seconds, processor)| {
-                    seconds.remove(0);
-                    // several threads work for one clock
-                    let processor =
-                        if threads == 1 { processor.into_iter().skip(1).collect() } else { Vec::new() };
-                    Timed { threads, seconds, processor, cells, bytes }
-                });
+            let timed = |index: usize| Timed {
+                threads,
+                seconds: seconds[index][1..].to_vec(),
+                // several threads work for one clock
+                processor: if threads == 1 {
+                    processor[index].iter().skip(1).copied().collect()
+                } else {
+                    Vec::new()
+                },
+                cells,
+                bytes,
+            };
+            let [force, derivative, steps] = [0, 1, 2].map(timed);
             let derivative_error = off(&derivatives, &difference);
-            Ok(ForceTimes { force, derivative, forces, derivatives, derivative_error })
+            Ok(ForceTimes { force, derivative, forces, derivatives, derivative_error, steps })
         })
     })?
 }
@@ -309,17 +336,8 @@ pub fn bar(element: &str, cells: u32, law: &str) -> Vec<String> {
 #[derive(Clone, Copy)]
 pub enum Wanted {
     ElementsPerSecond(f64),
-    /// Complete explicit steps of the same bar, measured in the same run.
+    /// Complete explicit steps of the same bar, timed in turn with them.
     Steps,
-}
-
-impl Wanted {
-    fn elements_per_second(self, element: &str, threads: usize, effort: Effort) -> Result<f64, String> {
-        match self {
-            Self::ElementsPerSecond(number) => Ok(number),
-            Self::Steps => super::beams::explicit_elements_per_second(element, threads, effort),
-        }
-    }
 }
 
 /// Forces alone of an element under St. Venant-Kirchhoff's law, and what a derivative product takes of them.
@@ -333,14 +351,23 @@ pub fn forces(
     let settings = bar(element, cells, "st_venant_kirchhoff");
     let mut figures = Vec::new();
     for threads in thread_counts() {
-        let times = force_times(&settings, threads, effort.choose(7, 41))?;
+        let steps = super::beams::explicit_settings(element, cells, "10 us");
+        let beside = matches!(wanted, Wanted::Steps).then_some(&steps[..]);
+        let sampling = Sampling { threads, samples: effort.choose(7, 41), in_a_row: 5, beside };
+        let times = force_times(&settings, sampling)?;
         let held = |baseline, wanted_of: &str| Held {
             error: times.derivative_error,
             error_of: wanted_of.to_owned(),
             baseline: Some(baseline),
         };
         let of_derivative = "derivative against differences of the force";
-        let wanted = wanted.elements_per_second(element, threads, effort)?;
+        let wanted = match wanted {
+            Wanted::ElementsPerSecond(number) => number,
+            Wanted::Steps => {
+                let figure = times.steps.elements_per_second("steps", &held(0.0, of_derivative));
+                figure.by_processor.unwrap_or(figure.value)
+            }
+        };
         figures.push(times.force.elements_per_second(name, &held(wanted, of_derivative)));
         let ForceTimes { force, derivative, .. } = &times;
         let (name, unit) = (format!("{name}_derivative"), ("x force", false));
