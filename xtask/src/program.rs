@@ -49,8 +49,9 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
 }
 
 /// Benches whose baselines are promises: about laws and elements, what is shown 25 times a second, and which of two ways is the cheaper.
-const SPEED: [&str; 14] = [
+const SPEED: [&str; 15] = [
     "law_text_tensor",
+    "law_text_table",
     "law_text_scalar",
     "law_ready",
     "tet4_forces",

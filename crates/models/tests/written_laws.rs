@@ -99,7 +99,7 @@ fn values_and_directions() {
         );
         assert!(said.starts_with(&words.0) && said.ends_with(words.1), "{said}");
     }
-    for value in ["10 kPa", "-2.5", "12 %", "[0.6, 0.8, 0]", "10 kpa", "1e999"] {
+    for value in ["10 kPa", "-2.5", "12 %", "[0.6, 0.8, 0]", "10 kpa", "1e999", "1e-310 Pa"] {
         assert!(is_parameter(value), "{value}");
     }
     for part in [

@@ -1,7 +1,7 @@
 //! Values set from the command line: `--set bodies.bar.material.youngs_modulus="2 MPa"`.
 //!
 //! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
-//! (`5ms`, `linear`). Keys that may be written can be set even where the scene leaves them out, and a whole item behind the
+//! (`5ms`, `linear`); nothing behind the `=` takes what is there out. Keys that may be written can be set even where the scene leaves them out, and a whole item behind the
 //! last one of a list; bodies, systems and the like must be there, except the system `main` that a scene has where it writes
 //! none. Files are relative to the current folder, as everything on the command line is.
 
@@ -66,7 +66,11 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
             write_default_system(document, place);
         }
         let setting = Setting { path, place, log };
-        setting.set(document, Some(&SCENE), &steps, node);
+        if value.trim().is_empty() {
+            setting.take_out(document, &steps);
+        } else {
+            setting.set(document, Some(&SCENE), &steps, node);
+        }
     }
 }
 
@@ -117,6 +121,48 @@ impl Setting<'_> {
             expected,
             message,
         });
+    }
+
+    /// Takes what `steps` lead to out of `table`.
+    fn take_out(&self, table: &mut Table, steps: &[Step]) {
+        let Some((last, way)) = steps.split_last() else { return };
+        let missing = || {
+            self.refuse(
+                format!("the scene has no `{}` to take out", self.path),
+                "a path that it has".to_owned(),
+            )
+        };
+        let mut at = Content::Table(std::mem::take(table));
+        let mut node = Some(&mut at);
+        for step in way {
+            node = match (node, step) {
+                (Some(Content::Table(table)), Step::Key(name)) => {
+                    table.get_mut(name).map(|node| &mut node.content)
+                }
+                (Some(Content::List(items)), Step::Index(index)) => {
+                    items.get_mut(*index).map(|node| &mut node.content)
+                }
+                _ => None,
+            };
+        }
+        let is_out = match (node, last) {
+            (Some(Content::Table(table)), Step::Key(name)) => {
+                let count = table.entries.len();
+                table.entries.retain(|entry| entry.key != *name);
+                table.entries.len() < count
+            }
+            (Some(Content::List(items)), Step::Index(index)) if *index < items.len() => {
+                items.remove(*index);
+                true
+            }
+            _ => false,
+        };
+        if let Content::Table(whole) = at {
+            *table = whole;
+        }
+        if !is_out {
+            missing();
+        }
     }
 
     /// Sets what `steps` lead to from `table`, whose keys are `keys` as far as they are known.
@@ -255,6 +301,26 @@ mod tests {
             table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
         let material = body.and_then(|body| body.get("material")).and_then(Node::as_table).expect("a table");
         assert_eq!(material.keys().collect::<Vec<_>>(), ["name", "density"]);
+    }
+
+    /// Keys and items are taken out; what is not there is not.
+    #[test]
+    fn parts_are_taken_out() {
+        let text = "[world]\nperiod = 1\n[bodies.a]\nlist = [1, 2, 3]\n[bodies.a.adapt]\nback = 0\n";
+        let (table, faults) = set(text, &["bodies.a.adapt=", "bodies.a.list[1]= "]);
+        assert_eq!(faults, 0);
+        let body =
+            table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
+        let body = body.expect("a table");
+        assert_eq!(body.keys().collect::<Vec<_>>(), ["list"]);
+        assert!(
+            matches!(body.get("list").map(|node| &node.content), Some(Content::List(items)) if items.len() == 2)
+        );
+        for missing in
+            ["bodies.a.adpat=", "bodies.b.adapt=", "bodies.a.list[3]=", "bodies.a.list.x=", "world.period.x="]
+        {
+            assert_eq!(set(text, &[missing]).1, 1, "{missing}");
+        }
     }
 
     /// The system that stands where none is written can be set, and only it.

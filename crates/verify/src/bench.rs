@@ -269,6 +269,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| laws::law_text("law_text_tensor", laws::Writing::Tensors, 1.3, effort),
     },
     Bench {
+        name: "law_text_table",
+        what: "the same of every law of the table, as it is written in the library, explicit and implicit [x built-in]",
+        run: |effort| laws::law_text_table("law_text_table", 1.3, effort),
+    },
+    Bench {
         name: "law_text_scalar",
         what: "the same with the law written entry by entry [x built-in]",
         run: |effort| laws::law_text("law_text_scalar", laws::Writing::Scalars, 2.5, effort),

@@ -565,7 +565,7 @@ impl<'l> Writer<'l> {
             Code::Divide => format!("{} / {}", number(0), number(1)),
             Code::WholePower(exponent) => format!("super::whole_power({}, {exponent})", number(0)),
             Code::SquareRoot => format!("{}.sqrt()", number(0)),
-            Code::Power => format!("super::power({}, {})", number(0), number(1)),
+            Code::Power | Code::PowerOfPositive => format!("super::power({}, {})", number(0), number(1)),
             Code::Call(Function::Ln) => format!("{}.ln()", number(0)),
             Code::Call(Function::Exp) => format!("{}.exp()", number(0)),
             Code::Call(Function::Abs) => format!("{}.abs()", number(0)),

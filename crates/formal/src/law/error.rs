@@ -64,7 +64,7 @@ pub enum LawProblem {
     #[error("at rest (F = I) this has no finite value: {reason}")]
     NoValueAtRest { reason: String },
     #[error(
-        "at rest (F = I) this has a corner: the energy, the stress or the stiffness jumps there, rises without bound, or is found by dividing zero by zero; a smooth form such as a square is accepted"
+        "at rest (F = I) this has a corner, where the energy, the stress or the stiffness jumps or rises without bound, or its derivatives there are found by dividing zero by zero; a smooth form such as a square is accepted"
     )]
     CornerAtRest,
     #[error(

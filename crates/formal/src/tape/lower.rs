@@ -545,7 +545,13 @@ impl Lowering<'_> {
             return if value < 0.0 { self.reciprocal(root) } else { root };
         }
         let exponent = self.number(value);
-        self.emit(Code::Power, 1, 1, &[at, exponent])
+        // not whole: of a base below zero there is none
+        self.emit(
+            if value.fract() == 0.0 { Code::Power } else { Code::PowerOfPositive },
+            1,
+            1,
+            &[at, exponent],
+        )
     }
 
     fn whole_power(&mut self, base: Place, exponent: u8) -> Place {

@@ -142,6 +142,9 @@ impl<S: Simd> Registers<S> {
             Code::WholePower(exponent) => numbers!(|g| whole_power(self.load(0, 0, g), exponent)),
             Code::SquareRoot => numbers!(|g| self.load(0, 0, g).sqrt()),
             Code::Power => numbers!(|g| power(self.load(0, 0, g), self.load(1, 0, g))),
+            Code::PowerOfPositive => {
+                numbers!(|g| (self.load(0, 0, g).ln() * self.load(1, 0, g)).exp())
+            }
             Code::Call(Function::Ln) => numbers!(|g| self.load(0, 0, g).ln()),
             Code::Call(Function::Abs) => numbers!(|g| self.load(0, 0, g).abs()),
             Code::Call(function) => numbers!(|g| call(function, self.load(0, 0, g))),

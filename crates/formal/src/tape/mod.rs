@@ -33,7 +33,10 @@ pub(crate) enum Code {
     /// `a bⁿ⁻¹ …`: a whole power from 2 on.
     WholePower(u8),
     SquareRoot,
+    /// `aᵇ`, also of a base below zero to a whole power.
     Power,
+    /// `exp(b ln a)`, a power of a base that is not below zero: half of what [`Self::Power`] takes.
+    PowerOfPositive,
     Call(Function),
     Compare(Comparison),
     Select,
@@ -154,6 +157,16 @@ impl Tape {
 
     pub fn is_empty(&self) -> bool {
         self.instructions.is_empty()
+    }
+
+    /// Whether its instructions are sums, products, quotients, powers, logarithms, exponentials and principal stretches alone, none of which
+    /// is put together of pieces.
+    pub fn is_without_choice(&self) -> bool {
+        self.instructions.iter().all(|instruction| match instruction.code {
+            Code::Call(function) => matches!(function, Function::Ln | Function::Exp),
+            Code::Compare(_) | Code::Select | Code::SquareRoot => false,
+            _ => true,
+        })
     }
 
     /// Where the lanes of entry `entry` of `F` start, by columns.

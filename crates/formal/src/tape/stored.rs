@@ -8,7 +8,7 @@ use crate::FUNCTIONS;
 use crate::graph::Comparison;
 
 /// Codes without a detail; a code is written as its place here.
-pub(super) const PLAIN: [Code; 29] = [
+pub(super) const PLAIN: [Code; 30] = [
     Code::Copy,
     Code::Add,
     Code::Multiply,
@@ -16,6 +16,7 @@ pub(super) const PLAIN: [Code; 29] = [
     Code::Divide,
     Code::SquareRoot,
     Code::Power,
+    Code::PowerOfPositive,
     Code::Select,
     Code::Scale,
     Code::ScaleAdd,
@@ -178,7 +179,9 @@ pub(super) fn sizes(code: Code, entries: u32) -> (u32, [u32; 5]) {
     match code {
         Code::Copy => (entries, [entries, 0, 0, 0, 0]),
         Code::Add => (entries, [entries, entries, 0, 0, 0]),
-        Code::Multiply | Code::Divide | Code::Power | Code::Compare(_) => (1, [1, 1, 0, 0, 0]),
+        Code::Multiply | Code::Divide | Code::Power | Code::PowerOfPositive | Code::Compare(_) => {
+            (1, [1, 1, 0, 0, 0])
+        }
         Code::MultiplyAdd | Code::Select => (1, [1, 1, 1, 0, 0]),
         Code::WholePower(_) | Code::SquareRoot | Code::Call(_) => (1, [1, 0, 0, 0, 0]),
         Code::Scale => (entries, [1, entries, 0, 0, 0]),

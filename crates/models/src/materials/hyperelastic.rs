@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use souple_formal::law::{self, EnergyLaw, LawError, LawParameter, LawText, Strain};
 use souple_formal::tape::{Part, Tape};
-use souple_formal::{Expression, Formula, Span, parse_quantity};
+use souple_formal::{Expression, Formula, Span, UnitError, parse_quantity};
 use souple_math::{Mat3, Vec3};
 use souple_table::{Entry, Parameter, Value};
 
@@ -165,6 +165,7 @@ pub fn is_parameter(text: &str) -> bool {
     match (parse_quantity(text), Expression::parse(text)) {
         (Ok(_), _) => true,
         (Err(_), Ok(_)) => false,
+        (Err(UnitError::OutOfRange { .. }), Err(_)) => true,
         // what went on for longer is what was meant: `10 kpa` is no part of an energy
         (Err(unit), Err(formula)) => unit.span().start >= formula.span().start,
     }

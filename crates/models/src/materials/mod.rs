@@ -18,6 +18,7 @@ mod library;
 mod linear;
 mod mooney_rivlin;
 mod neo_hookean;
+mod of_table;
 mod ogden;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;

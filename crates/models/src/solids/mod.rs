@@ -171,7 +171,22 @@ impl PartialEq for Class<'_> {
 enum Kernels {
     /// Derived ones where they are faster, else by samples.
     Fastest,
+    /// The same, where cells are sorted alike under any law: those that share no shape are not looked at for what derived ones know.
+    FastestAlike,
     Samples,
+}
+
+impl Kernels {
+    /// Whether cells of a kind are looked at one by one, for what a derived kernel of a law knows of boxes.
+    fn reads_map(self, law: &MaterialLaw, kind: ElementKind, has_shape: bool) -> bool {
+        match self {
+            // a stiffness that cells of one shape share has no map
+            Self::Fastest => !has_shape && derived::has_box(law, kind),
+            // cells of one shape are boxes together
+            Self::FastestAlike => has_shape && !law.is_linear() && derived::has_box(law, kind),
+            Self::Samples => false,
+        }
+    }
 }
 
 /// Elements by law and by shape, with the law's numbers.
@@ -204,12 +219,19 @@ impl<'a> ByLaw<'a> {
         };
         // cells of one shape have one material
         let mut known: HashMap<(u16, Option<u32>, MapKind), u32> = HashMap::new();
+        let mut map_of_shape: HashMap<u32, MapKind> = HashMap::new();
         for (index, (cell, material)) in mesh.cells().zip(*material_of_cell).enumerate() {
             let shape = shapes.of_cell(index);
             let law = &materials[usize::from(*material)].law;
-            let reads_map =
-                shape.is_none() && kernels == Kernels::Fastest && derived::has_box(law, cell.kind);
-            let map = if reads_map { derived::map_of(mesh, &cell) } else { MapKind::General };
+            let map = || match kernels.reads_map(law, cell.kind, shape.is_some()) {
+                true => derived::map_of(mesh, &cell),
+                false => MapKind::General,
+            };
+            // cells of one shape have one map, that of the first, whatever their rounding
+            let map = match shape {
+                Some(shape) => *map_of_shape.entry(shape).or_insert_with(map),
+                None => map(),
+            };
             let next = sorting.classes.len() as u32;
             let class = *known.entry((*material, shape, map)).or_insert(next);
             sorting.class_of_cell.push(class);
@@ -247,7 +269,7 @@ impl ByLaw<'_> {
     /// The kernel of cells that have no stiffness of their own.
     fn of_cells(&self, kind: ElementKind, rule: &QuadratureRule, class: &Class) -> Box<dyn Kernel> {
         let samples = || self.of_samples(kind, rule, class.law);
-        let takes_derived = self.kernels == Kernels::Fastest
+        let takes_derived = self.kernels != Kernels::Samples
             && matches!(self.section, Section::Solid | Section::PlaneStrain { .. });
         let derived = takes_derived
             .then(|| derived::kernel(class.law, (kind, class.map), rule, Wanted::Fastest, samples))
@@ -287,12 +309,15 @@ impl<'a> Sorting for ByLaw<'a> {
 
 impl SolidForce {
     /// The fastest that is exact: cells of linear laws by their stiffness where many have one shape, others by a kernel derived for
-    /// their law and kind where that is faster, and by samples.
+    /// their law and kind where that is faster, and by samples; texts that are laws of the table as those.
     ///
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        Self::of_shapes(description, &Shapes::of_linear(description), Kernels::Fastest)
+        let materials: Vec<Material> = description.materials.iter().map(Material::of_table).collect();
+        let description =
+            SolidDescription { name: description.name.clone(), materials: &materials, ..*description };
+        Self::of_shapes(&description, &Shapes::of_linear(&description), Kernels::Fastest)
     }
 
     /// Every cell by its samples.

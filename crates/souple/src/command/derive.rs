@@ -124,7 +124,10 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
                     "a hyperelastic law whose constants are given, as by `--parameter {name}=\"{example}\"` or `--define {name}=TEXT`"
                 )
             }
-            _ => "an energy per volume whose stress is zero at rest, such as those of `souple list laws`".to_owned(),
+            LawProblem::StressAtRest { .. } | LawProblem::NoValueAtRest { .. } | LawProblem::CornerAtRest => {
+                "an energy per volume whose stress is zero at rest, such as those of `souple list laws`".to_owned()
+            }
+            _ => "a law as text, such as those of `souple list laws`".to_owned(),
         };
         let value = error.span.map_or(written, |span| span.of(written));
         Refusal::request("law", value, expected, error.explained(written)).within(&error, written)

@@ -86,42 +86,127 @@ fn distance(world: &World, other: &World, start: &[Vec3]) -> f64 {
 /// the table is one loop with the element) and hexahedra; and how long the text takes to be ready.
 pub fn law_text(name: &str, writing: Writing, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
-    for (element, cells, steps) in [("tet4", 6, 10), ("hex8", 6, 10)] {
-        let measured = with_threads(1, || {
-            let mut known = started(&settings(element, cells, None))?;
-            let start = known.state().systems[0].q.clone();
-            let mut text = started(&settings(element, cells, Some(writing)))?;
-            let mut of_known = [Vec::new(), Vec::new()];
-            let mut of_text = [Vec::new(), Vec::new()];
-            for _ in 0..effort.choose(7, 31) {
-                time_steps(&mut known, steps, &mut of_known)?;
-                time_steps(&mut text, steps, &mut of_text)?;
-            }
-            let ratios: Vec<f64> =
-                of_text[0].iter().zip(&of_known[0]).map(|(text, known)| text / known).collect();
-            let by_processor = over(&of_text[1], &of_known[1]);
-            Ok::<_, String>((ratios, by_processor, distance(&known, &text, &start), text.bytes()))
-        });
-        let (ratios, by_processor, error, bytes) = measured??;
-        let samples = ratios.len();
-        let (value, spread) = median(ratios);
-        figures.push(Figure {
-            by_processor,
-            name: format!("{name}_{element}_1t"),
-            value,
-            unit: "x built-in",
-            higher_is_better: false,
-            error,
-            error_of: "motion by the law of the table".to_owned(),
-            baseline: Some(most),
-            threads: 1,
-            samples,
-            spread,
-            bytes,
-        });
+    for element in ["tet4", "hex8"] {
+        let [known, text] = [None, Some(writing)].map(|writing| settings(element, 6, writing));
+        figures.push(text_over_known(&format!("{name}_{element}"), [&known, &text], most, effort)?);
     }
     figures.push(ready(name, writing, effort)?);
     Ok(figures)
+}
+
+/// A law of the table: its name, its numbers there and in its text.
+type OfTable = (&'static str, &'static str, &'static str);
+
+const MODULI: &str = "youngs_modulus = 1e7, poissons_ratio = 0.25";
+const LAME: &str = "mu = \"4e6 Pa\", lambda = \"4e6 Pa\"";
+/// All of them that texts of the library are.
+const TABLE: [OfTable; 8] = [
+    ("linear", MODULI, LAME),
+    ("corotational", MODULI, LAME),
+    ("st_venant_kirchhoff", MODULI, LAME),
+    ("neo_hookean", MODULI, LAME),
+    ("stable_neo_hookean", MODULI, LAME),
+    (
+        "mooney_rivlin",
+        "c10 = 1.5e6, c01 = 5e5, bulk_modulus = 8e6",
+        "c10 = \"1.5e6 Pa\", c01 = \"5e5 Pa\", k = \"8e6 Pa\"",
+    ),
+    (
+        "yeoh",
+        "c1 = 2e6, c2 = 1e5, c3 = 1e4, bulk_modulus = 8e6",
+        "c1 = \"2e6 Pa\", c2 = \"1e5 Pa\", c3 = \"1e4 Pa\", k = \"8e6 Pa\"",
+    ),
+    (
+        "ogden",
+        "mu = [5e6, -1e6], alpha = [1.8, -2.5], bulk_modulus = 8e6",
+        "mu1 = \"5e6 Pa\", a1 = 1.8, mu2 = \"-1e6 Pa\", a2 = -2.5, k = \"8e6 Pa\"",
+    ),
+];
+
+/// Every law of the table as it is written in the library against itself, on complete explicit steps of each kind of element and on
+/// implicit ones of tetrahedra.
+pub fn law_text_table(name: &str, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
+    const EXPLICIT: [&str; 2] = [r#"world.period="10 us""#, r#"systems.main.stepper="symplectic_euler""#];
+    const IMPLICIT: [&str; 1] =
+        [r#"systems.main.stepper={ name = "backward_euler", newton = "one", solver_tolerance = 1e-6 }"#];
+    let mut figures = Vec::new();
+    for (law, of_table, of_text) in TABLE {
+        let written =
+            WRITTEN_LAWS.iter().find(|written| written.name == law).ok_or("every law has a text")?;
+        let definitions: Vec<String> =
+            written.definitions.iter().map(|(name, part)| format!("{name} = \"{part}\"")).collect();
+        let materials = [
+            format!("bodies.bar.material={{ name = \"{law}\", {of_table}, density = 1000 }}"),
+            format!(
+                "bodies.bar.material={{ name = \"hyperelastic\", energy = \"{}\", definitions = {{ {} }}, parameters = {{ {of_text} }}, density = 1000 }}",
+                written.energy,
+                definitions.join(", "),
+            ),
+        ];
+        let explicit =
+            ["tet4", "hex8", "prism6", "pyramid5", "tri3"].map(|element| (element, "", &EXPLICIT[..]));
+        for (element, manner, stepper) in explicit.into_iter().chain([("tet4", "_implicit", &IMPLICIT[..])]) {
+            let settings = materials.each_ref().map(|material| {
+                let cells = if element == "tri3" { 24 } else { 5 };
+                let mut settings = bar(element, cells, law);
+                // the law that the bar was made with gives way
+                settings.pop();
+                settings.extend(stepper.iter().map(|setting| (*setting).to_owned()));
+                settings.push(material.clone());
+                settings
+            });
+            let [known, text] = &settings;
+            figures.push(text_over_known(
+                &format!("{name}_{law}_{element}{manner}"),
+                [known, text],
+                most,
+                effort,
+            )?);
+        }
+    }
+    Ok(figures)
+}
+
+/// Time of a step of the second over that of the first, sample by sample in turn, and how far their motions are apart.
+fn text_over_known(
+    name: &str,
+    [known, text]: [&[String]; 2],
+    most: f64,
+    effort: Effort,
+) -> Result<Figure, String> {
+    let steps = 10;
+    let measured = with_threads(1, || {
+        let mut known = started(known)?;
+        let start = known.state().systems[0].q.clone();
+        let mut text = started(text)?;
+        let mut of_known = [Vec::new(), Vec::new()];
+        let mut of_text = [Vec::new(), Vec::new()];
+        for _ in 0..effort.choose(7, 31) {
+            time_steps(&mut known, steps, &mut of_known)?;
+            time_steps(&mut text, steps, &mut of_text)?;
+        }
+        let ratios: Vec<f64> =
+            of_text[0].iter().zip(&of_known[0]).map(|(text, known)| text / known).collect();
+        let by_processor = over(&of_text[1], &of_known[1]);
+        Ok::<_, String>((ratios, by_processor, distance(&known, &text, &start), text.bytes()))
+    });
+    let (ratios, by_processor, error, bytes) = measured??;
+    let samples = ratios.len();
+    let (value, spread) = median(ratios);
+    Ok(Figure {
+        by_processor,
+        name: format!("{name}_1t"),
+        value,
+        unit: "x built-in",
+        higher_is_better: false,
+        error,
+        error_of: "motion by the law of the table".to_owned(),
+        baseline: Some(most),
+        threads: 1,
+        samples,
+        spread,
+        bytes,
+    })
 }
 
 /// From text to a world that can step: what a scene of ten cells takes more with the law as text.

@@ -100,7 +100,7 @@ impl AdaptiveForce {
         let is_shared = |law: &&Material| law.law.is_linear();
         let linear = laws.iter().find(is_shared).unwrap_or(first);
         let shapes = Shapes::of_linear(&under(linear));
-        let solid = |law| SolidForce::of_shapes(&under(law), &shapes, Kernels::Samples);
+        let solid = |law| SolidForce::of_shapes(&under(law), &shapes, Kernels::FastestAlike);
         let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
         let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
         let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);

@@ -1,0 +1,119 @@
+//! Texts that are laws of the table, however they are written: bodies run them as those.
+//!
+//! Looked for are the laws of two moduli that have a value for every `F`; moduli are those of the text at rest. A text is the law where
+//! both have the same energy at [`POINTS`] deformations, which are more than the 715 numbers that a polynomial of degree four in the nine
+//! entries of `F` has: one that is written in no other operations is the same. Powers, logarithms and principal stretches are analytic on
+//! either side of `J = 0`, where half of the points lie, and what is another law is told by deformations of several sizes; choices could
+//! be the same there and other elsewhere, and are none of these laws.
+
+use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw};
+use souple_math::{Mat3, Vec3};
+
+/// The laws, with the degree of their energies.
+const CANDIDATES: [(AnyLaw, i32); 4] = [
+    (AnyLaw::Linear, 2),
+    (AnyLaw::Corotational, 2),
+    (AnyLaw::StVenantKirchhoff, 4),
+    (AnyLaw::StableNeoHookean, 6),
+];
+const POINTS: u32 = 768;
+/// Of entries of `F - I`, in turn.
+const SIZES: [f64; 4] = [0.1, 0.5, 2.0, 20.0];
+/// Of the largest terms: an energy is a hundred operations, and moduli come of sums of a hundred of the second derivatives.
+const ROUNDING: f64 = 1e-13;
+
+impl Material {
+    /// The material with the law of the table that its text is, if it is one; else as it is.
+    pub(crate) fn of_table(&self) -> Self {
+        let MaterialLaw::Text(text) = &self.law else { return self.clone() };
+        let known = CANDIDATES.into_iter().find_map(|(law, degree)| {
+            let known = Self::known(law, self.small_strain, self.small_strain, self.density);
+            is_same(text, &known, degree).then_some(known)
+        });
+        known.unwrap_or_else(|| self.clone())
+    }
+}
+
+/// Whether a text has the energy of a known material.
+fn is_same(text: &TextLaw, known: &Material, degree: i32) -> bool {
+    let Lame { mu, lambda } = known.small_strain;
+    let modulus = 2.0 * mu.abs() + lambda.abs();
+    text.energy().is_without_choice()
+        && (0..POINTS).all(|point| {
+            let F = deformation(point);
+            let largest = modulus * (1.0 + F.dot(&F)).sqrt().powi(degree);
+            (text.energy_at(&F) - known.energy_density(&F)).abs() <= ROUNDING * largest
+        })
+}
+
+/// One of many in general position: the multiples of nine irrational numbers, without their whole parts.
+fn deformation(point: u32) -> Mat3 {
+    let size = SIZES[point as usize % SIZES.len()];
+    let entry = |prime: f64| size * (2.0 * (f64::from(point + 1) * prime.sqrt()).fract() - 1.0);
+    let column = |primes: [f64; 3]| Vec3::new(entry(primes[0]), entry(primes[1]), entry(primes[2]));
+    let G = [[2.0, 3.0, 5.0], [7.0, 11.0, 13.0], [17.0, 19.0, 23.0]].map(column);
+    Mat3::IDENTITY + Mat3 { columns: G }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::law_text;
+
+    fn law_of(energy: &str, definitions: &[(&str, &str)]) -> Option<AnyLaw> {
+        let owned = |list: &[(&str, &str)]| -> Vec<(String, String)> {
+            list.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+        };
+        let parameters = owned(&[("mu", "10 kPa"), ("lambda", "20 kPa")]);
+        let text = law_text(energy, &parameters, &owned(definitions)).unwrap();
+        let text = TextLaw::known(text).unwrap();
+        let small_strain = text.small_strain();
+        let material =
+            Material { law: MaterialLaw::Text(text), parameters: [0.0; 8], small_strain, density: 1.0 };
+        match material.of_table().law {
+            MaterialLaw::Known(law) => Some(law),
+            MaterialLaw::Text(_) => None,
+        }
+    }
+
+    /// By tensors, by invariants and by entries, in other letters and with numbers in the place of letters.
+    #[test]
+    fn laws_are_seen_however_they_are_written() {
+        let svk = Some(AnyLaw::StVenantKirchhoff);
+        let entries: Vec<(String, String)> = (1..=3)
+            .flat_map(|i| (1..=3).map(move |j| (i, j)))
+            .map(|(i, j)| {
+                let same = if i == j { " - 1" } else { "" };
+                (format!("g{i}{j}"), format!("(F1{i}*F1{j} + F2{i}*F2{j} + F3{i}*F3{j}{same})/2"))
+            })
+            .collect();
+        let entries: Vec<(&str, &str)> = entries.iter().map(|(a, b)| (&**a, &**b)).collect();
+        let by_entries =
+            "lambda/2*(g11 + g22 + g33)^2 + mu*(g11^2 + g22^2 + g33^2 + 2*g12^2 + 2*g13^2 + 2*g23^2)";
+        for (energy, definitions, law) in [
+            ("lambda/2*tr(E)^2 + mu*dot(E, E)", &[][..], svk),
+            ("mu/4*dot(C - I, C - I) + lambda/8*(I1 - 3)^2", &[], svk),
+            ("mu/4*(I1^2 - 2*I2 - 2*I1 + 3) + lambda/8*(I1 - 3)^2", &[], svk),
+            (by_entries, &entries, svk),
+            ("lambda/2*tr(eps)^2 + mu*dot(eps, eps)", &[], Some(AnyLaw::Linear)),
+            (
+                "m/2*(I1 - 3 - log((I1 + 1)/4)) + l/2*(J - 1)^2 - 3/4*m*(J - 1)",
+                &[("m", "4/3*mu"), ("l", "lambda + 5/6*mu")],
+                Some(AnyLaw::StableNeoHookean),
+            ),
+            (
+                "mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1 + l2 + l3 - 3)^2",
+                &[],
+                Some(AnyLaw::Corotational),
+            ),
+            // the same moduli at rest
+            ("lambda/2*tr(E)^2 + mu*dot(E, E) + 1e-6*mu*tr(E)^3", &[], None),
+            ("lambda/2*tr(E)^2 + mu*dot(E, E) + mu*max(tr(E) - 1e4, 0)^3", &[], None),
+            ("mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", &[], None),
+            ("mu*(log(l1)^2 + log(l2)^2 + log(l3)^2) + lambda/2*log(l1*l2*l3)^2", &[], None),
+            ("mu/2*(I1 - 3) - mu*(J - 1) + (lambda + mu)/2*(J - 1)^2", &[], None),
+        ] {
+            assert_eq!(law_of(energy, definitions), law, "{energy}");
+        }
+    }
+}
