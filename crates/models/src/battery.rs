@@ -337,7 +337,7 @@ impl Cell {
         let mesh = Mesh::new(self.rest.clone(), self.kind, nodes);
         let section =
             if self.dimension == 2 { Section::PlaneStrain { thickness: 1.0 } } else { Section::Solid };
-        let force = SolidForce::new(&SolidDescription {
+        let force = SolidForce::of_samples(&SolidDescription {
             name: "cell".to_owned(),
             mesh: &mesh,
             first_row: 0,
