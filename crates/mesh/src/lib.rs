@@ -54,5 +54,5 @@ pub use surface::{Feature, TriangleSurface, closest_point_on_triangle, vertex_no
 pub use surface_quality::TriangleQuality;
 pub use tree::{Aabb, AabbTree};
 pub use validate::Repairs;
-pub use voronoi::{VoronoiCells, Wall};
+pub use voronoi::{Part, VoronoiCells, Wall};
 pub use winding::WindingNumber;

@@ -25,6 +25,17 @@ pub struct VoronoiCells {
     pub facets: Vec<([u32; 2], f64)>,
     /// Boundaries of cells inside elements.
     pub walls: Vec<Wall>,
+    /// What each element has of cells.
+    pub parts: Vec<Part>,
+}
+
+/// What lies in one element of a point's cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Part {
+    pub element: u32,
+    pub point: u32,
+    /// [m³]; of triangles [m²].
+    pub volume: f64,
 }
 
 /// The boundary of a point's cell inside an element; what lies on the element's own faces is left out.
@@ -244,7 +255,11 @@ impl VoronoiCells {
                         owners.push(beyond);
                     }
                 }
-                cells.volumes[owner as usize] += part.volume() / height;
+                let volume = part.volume() / height;
+                cells.volumes[owner as usize] += volume;
+                if volume > 0.0 {
+                    cells.parts.push(Part { element: number, point: owner, volume });
+                }
                 if area != Vec3::ZERO {
                     cells.walls.push(Wall { element: number, point: owner, area });
                 }

@@ -92,7 +92,7 @@ fn size(values: &Values) -> Result<MeshSize, MeshError> {
     // the outside of the core, once for each layer: 6 n² + 2 points
     let corners = (n + 1).pow(3) + layers * (6 * n.pow(2) + 2);
     let centres = match cut {
-        Cut::Pyramids => cubes,
+        Cut::Pyramids | Cut::Centred => cubes,
         Cut::Mixed => 6 * n.pow(2),
         _ => 0,
     };
@@ -140,7 +140,7 @@ fn hollow_size(values: &Values) -> Result<MeshSize, MeshError> {
     let (n, layers, cut) = (n as u64, layers as u64, Cut::from_values(values));
     let cubes = 6 * n.pow(2) * layers;
     let centres = match cut {
-        Cut::Pyramids => cubes,
+        Cut::Pyramids | Cut::Centred => cubes,
         Cut::Mixed => 6 * n.pow(2),
         _ => 0,
     };
@@ -317,6 +317,7 @@ impl Shells {
                 (Cut::Hexahedra, _) | (Cut::Mixed, None) => blocks.push(ElementKind::Hex8, &corners),
                 (Cut::Prisms, _) => blocks.prisms(corners),
                 (Cut::Pyramids, _) => blocks.pyramids(corners, centre(), None),
+                (Cut::Centred, _) => blocks.centred_tetrahedra(corners, centre()),
                 (Cut::Tetrahedra, _) => blocks.numbered_tetrahedra(corners),
                 // from inside: hexahedra, pyramids that meet tetrahedra outward, tetrahedra, prisms
                 (Cut::Mixed, Some((0, outward))) => blocks.pyramids(corners, centre(), Some(outward)),

@@ -17,6 +17,8 @@ pub(super) enum Cut {
     Prisms,
     /// Six pyramids with their apices at the centre of the cube.
     Pyramids,
+    /// The same, each cut in two tetrahedra.
+    Centred,
     /// Zones of hexahedra, one layer of pyramids, tetrahedra, prisms; conforming.
     Mixed,
 }
@@ -24,7 +26,7 @@ pub(super) enum Cut {
 impl Cut {
     pub(super) const PARAMETER: Parameter = Parameter {
         name: "element",
-        summary: "kind of cells; `mixed` has all four kinds, conforming",
+        summary: "kind of cells; `mixed` has all four kinds, conforming; `tet4_centred` are twelve tetrahedra around the centre of each cube",
         kind: Kind::Choice(&[
             "tet4",
             "hex8",
@@ -36,6 +38,7 @@ impl Cut {
             "prism15",
             "pyramid13",
             "mixed_quadratic",
+            "tet4_centred",
         ]),
         unit: "",
         range: souple_table::Range::ANY,
@@ -49,6 +52,7 @@ impl Cut {
             "prism6" | "prism15" => Self::Prisms,
             "pyramid5" | "pyramid13" => Self::Pyramids,
             "mixed" | "mixed_quadratic" => Self::Mixed,
+            "tet4_centred" => Self::Centred,
             other => unreachable!("`{other}` is not among the declared choices"),
         }
     }
@@ -61,7 +65,7 @@ impl Cut {
             // one across the faces of triangles
             Self::Prisms => 5,
             // three edges of a cube and eight to its centre, for two points
-            Self::Pyramids => 7,
+            Self::Pyramids | Self::Centred => 7,
             // three along the axes, three across faces, one through the cube
             Self::Tetrahedra | Self::Mixed => 8,
         }
@@ -72,6 +76,7 @@ impl Cut {
             Self::Hexahedra => 1,
             Self::Prisms => 2,
             Self::Tetrahedra | Self::Pyramids => 6,
+            Self::Centred => 12,
             // five pyramids and two tetrahedra in the layer between
             Self::Mixed => 7,
         }
@@ -219,6 +224,15 @@ impl Blocks {
             } else {
                 self.push(ElementKind::Pyramid5, &[p, q, r, s, centre]);
             }
+        }
+    }
+
+    /// Twelve tetrahedra from the halves of the faces to the centre; each face is cut at its corner of lowest number, as its neighbour cuts it.
+    pub(super) fn centred_tetrahedra(&mut self, c: [u32; 8], centre: u32) {
+        for base in BASES {
+            let [p, q, r, s] = from_lowest(base.map(|corner| c[corner]));
+            self.push(ElementKind::Tet4, &[p, q, r, centre]);
+            self.push(ElementKind::Tet4, &[p, r, s, centre]);
         }
     }
 

@@ -138,7 +138,7 @@ impl Section {
     /// What [`Self::swept`] will make.
     fn size(&self, layers: usize, cut: Cut) -> MeshSize {
         let cubes = (self.quads.len() * layers) as u64;
-        let centres = if cut == Cut::Pyramids { cubes } else { 0 };
+        let centres = if matches!(cut, Cut::Pyramids | Cut::Centred) { cubes } else { 0 };
         let points = (self.points.len() * (layers + 1)) as u64 + centres;
         MeshSize { points, cells: cubes * cut.cells_per_cube() }
     }
@@ -163,10 +163,15 @@ impl Section {
                     Cut::Hexahedra => blocks.push(ElementKind::Hex8, &corners),
                     Cut::Prisms => blocks.prisms(corners),
                     Cut::Tetrahedra | Cut::Mixed => blocks.numbered_tetrahedra(corners),
-                    Cut::Pyramids => {
+                    Cut::Pyramids | Cut::Centred => {
                         let middle = corners.iter().map(|node| points[*node as usize]).sum::<Vec3>() / 8.0;
                         points.push(middle);
-                        blocks.pyramids(corners, points.len() as u32 - 1, None);
+                        let centre = points.len() as u32 - 1;
+                        if cut == Cut::Centred {
+                            blocks.centred_tetrahedra(corners, centre);
+                        } else {
+                            blocks.pyramids(corners, centre, None);
+                        }
                     }
                 }
             }

@@ -84,6 +84,7 @@ impl Grid {
                         Zone::Uniform(Cut::Hexahedra) => blocks.push(ElementKind::Hex8, &corners),
                         Zone::Uniform(Cut::Prisms) => blocks.prisms(corners),
                         Zone::Uniform(Cut::Pyramids) => blocks.pyramids(corners, centre(), None),
+                        Zone::Uniform(Cut::Centred) => blocks.centred_tetrahedra(corners, centre()),
                         Zone::Uniform(Cut::Tetrahedra | Cut::Mixed) => blocks.kuhn_tetrahedra(corners),
                         Zone::Transition => blocks.pyramids(corners, centre(), Some(BASE_X_MAX)),
                     }
@@ -129,7 +130,7 @@ enum Zone {
 
 impl Zone {
     fn has_centres(self) -> bool {
-        matches!(self, Self::Uniform(Cut::Pyramids) | Self::Transition)
+        matches!(self, Self::Uniform(Cut::Pyramids | Cut::Centred) | Self::Transition)
     }
 
     fn cells_per_cube(self) -> u64 {

@@ -1,4 +1,4 @@
-//! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, sheet, line, in every kind of cell and in mixes.
+//! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, sheet, line, lattice, in every kind of cell and in mixes.
 //!
 //! Boxes are grids of cubes (`grid`), in `parts` of several kinds, balls a grid in a shell of six (`ball`), cylinders a section
 //! swept (`cylinder`); each cube is `cut` into cells. Quadratic cells are linear ones raised, middles of edges on the
@@ -9,6 +9,7 @@ mod cuboid;
 mod cut;
 mod cylinder;
 mod grid;
+mod lattice;
 mod parts;
 mod sheet;
 
@@ -45,6 +46,7 @@ pub static GENERATORS: Table<Build> = Table {
         &cylinder::SHELL,
         &sheet::SHEET,
         &sheet::LINE,
+        &lattice::LATTICE,
     ],
 };
 

@@ -4,7 +4,7 @@
 
 use souple_engine::Mass;
 use souple_math::Vec3;
-use souple_mesh::{Cell, MAX_NODES, Mesh, Order, QuadratureRule};
+use souple_mesh::{Cell, MAX_NODES, Mesh, Order, QuadratureRule, VoronoiCells};
 
 /// Adds the mass of every cell to those of its nodes' rows. Call [`Mass::seal`] when all bodies are in.
 ///
@@ -49,6 +49,22 @@ pub fn uniform_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usiz
         let row = (first_row + point) as u32;
         mass.add(row, row, share);
     }
+}
+
+/// Adds to each point the mass of all that is nearer to it than to any other, within the body (Debunne 2000, 4 §4.2); `None`, and nothing
+/// is added, of cells other than linear tetrahedra and triangles. Call [`Mass::seal`] when all bodies are in.
+#[must_use]
+pub fn voronoi_mass(
+    mesh: &Mesh,
+    first_row: usize,
+    density_of_cell: &dyn Fn(usize) -> f64,
+    mass: &mut Mass,
+) -> Option<()> {
+    for part in VoronoiCells::of(mesh)?.parts {
+        let row = part.point + first_row as u32;
+        mass.add(row, row, density_of_cell(part.element as usize) * part.volume);
+    }
+    Some(())
 }
 
 /// Adds `∫ρ N_a N_b dV` of every cell. Call [`Mass::seal`] when all bodies are in.

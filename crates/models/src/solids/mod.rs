@@ -65,7 +65,7 @@ pub use formulation::{
     BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, operator_quality,
 };
 pub use layout::FlatCell;
-pub use mass::{consistent_mass, lumped_mass, uniform_mass};
+pub use mass::{consistent_mass, lumped_mass, uniform_mass, voronoi_mass};
 pub use quadrature::Quadrature;
 pub use rayleigh::RayleighDamping;
 pub use section::{BuildSection, SECTIONS, Section};

@@ -12,7 +12,7 @@ use souple_models::materials::Material;
 use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
-    SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
+    SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass, voronoi_mass,
 };
 
 use super::frames::PlacedFrames;
@@ -238,6 +238,13 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
+            MassKind::Voronoi => {
+                if voronoi_mass(&body.mesh, body.rows.start, &density, &mut mass).is_none() {
+                    let message = "only cells of simplices are cut half way between points";
+                    let expected = "cells `tet4` or `tri3`, or `mass = \"lumped\"`";
+                    draft.log.add(Code::Conflict, &body.spec.site, message, expected);
+                }
+            }
         }
         if body.spec.octree.is_some() {
             forces.extend(octree::force(draft, body));

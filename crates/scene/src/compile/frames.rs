@@ -71,7 +71,7 @@ impl PlacedFrames {
         match kind {
             MassKind::Consistent => frames::consistent_mass(&self.carried, &masses, &self.rows, mass),
             // refused where frames are placed: points that frames carry have no mass of their own
-            MassKind::Lumped | MassKind::Uniform => {
+            MassKind::Lumped | MassKind::Uniform | MassKind::Voronoi => {
                 frames::lumped_mass(&self.frames, &self.samples, &self.carried, &masses, &self.rows, mass);
             }
         }
@@ -146,7 +146,7 @@ pub fn place(
         draft.log.add(Code::Conflict, &spec.site, message, "`rayleigh_mass`, or `drag`");
         return None;
     }
-    if body.mass == MassKind::Uniform {
+    if matches!(body.mass, MassKind::Uniform | MassKind::Voronoi) {
         let message = "a body of frames has its mass in its frames, not in points that are alike";
         draft.log.add(Code::Conflict, &spec.site, message, "`mass = \"lumped\"` or `mass = \"consistent\"`");
         return None;

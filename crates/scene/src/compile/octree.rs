@@ -77,7 +77,7 @@ fn suits(draft: &Draft, body: &Body, spec: &OctreeSpec) -> bool {
             "`operators` of the octree, and no `formulation`",
         );
     }
-    if body.mass == MassKind::Consistent {
+    if matches!(body.mass, MassKind::Consistent | MassKind::Voronoi) {
         return refuse("particles have masses of their own", "`mass = \"uniform\"` or `\"lumped\"`");
     }
     if !body.regions.is_empty() {

@@ -148,7 +148,7 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new(
             "mass",
-            Shape::Choice(&["lumped", "consistent", "uniform"]),
+            Shape::Choice(&["lumped", "consistent", "uniform", "voronoi"]),
             "how mass is spread over points",
         )
         .or(Value::Text("lumped")),
@@ -302,6 +302,8 @@ pub enum MassKind {
     Consistent,
     /// To all points alike.
     Uniform,
+    /// To each point that of all that is nearer to it than to others.
+    Voronoi,
 }
 
 /// How products with the stiffness are made where no matrix is stored.
@@ -411,6 +413,7 @@ impl Body {
                 _ if reader.has("frames") && !reader.has("mass") => MassKind::Consistent,
                 "consistent" => MassKind::Consistent,
                 "uniform" => MassKind::Uniform,
+                "voronoi" => MassKind::Voronoi,
                 _ => MassKind::Lumped,
             },
             quadrature: super::rules::read(reader),

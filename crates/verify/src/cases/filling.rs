@@ -48,6 +48,99 @@ const OF_ANY_STIFFNESS: Case = Case {
     ..WEIGHT
 };
 
+/// A body of some kind that hangs from some of it.
+const HANGING: Case = Case {
+    capabilities: &["DEB-56"],
+    what: "what holds the body of that name over its mass: gravity",
+    scene: "any_body",
+    settings: &[],
+    reading: Reading::Ratio { of: "hold", to: "mass", component: 0 },
+    reference: 9.81,
+    // Newton's method leaves 1e-9 of the load
+    tolerance: Tolerance::Relative(1e-8),
+    source: "balance of forces at rest, whatever the stiffness",
+    mutation: "world.gravity=[0, -9.8, 0]",
+    ..WEIGHT
+};
+
+/// The softest and the hardest of a kind of bodies.
+macro_rules! hanging {
+    ($soft:literal, $hard:literal, $mesh:literal, $region:literal) => {
+        [
+            Case {
+                id: $soft,
+                settings: &[
+                    concat!("bodies.body.mesh=", $mesh),
+                    concat!("bodies.body.pins[0].region=", $region),
+                    "bodies.body.material.youngs_modulus=\"2 kPa\"",
+                ],
+                ..HANGING
+            },
+            Case {
+                id: $hard,
+                settings: &[
+                    concat!("bodies.body.mesh=", $mesh),
+                    concat!("bodies.body.pins[0].region=", $region),
+                    "bodies.body.material.youngs_modulus=\"100 MPa\"",
+                ],
+                ..HANGING
+            },
+        ]
+    };
+}
+
+/// The bodies of `scenes/any_body/bodies.csv`, of 2 kPa and of 100 MPa.
+pub(super) const BODIES: &[[Case; 2]] = &[
+    hanging!(
+        "organ_hangs_soft",
+        "organ_hangs_hard",
+        r#"{ shape = "liver", width = 0.2, count = 2000 }"#,
+        r#"{ formula = "y > 0.03" }"#
+    ),
+    hanging!(
+        "block_hangs_soft",
+        "block_hangs_hard",
+        r#"{ generate = "box", size = [0.2, 0.1, 0.1], cells = [12, 6, 6], element = "tet4" }"#,
+        r#""y_max""#
+    ),
+    hanging!(
+        "rod_hangs_soft",
+        "rod_hangs_hard",
+        r#"{ generate = "box", size = [0.02, 0.1, 0.02], cells = [3, 15, 3], element = "tet4" }"#,
+        r#""y_max""#
+    ),
+    hanging!(
+        "cube_hangs_soft",
+        "cube_hangs_hard",
+        r#"{ generate = "box", size = [0.1, 0.1, 0.1], cells = [6, 6, 6], element = "tet4" }"#,
+        r#""y_max""#
+    ),
+    hanging!(
+        "character_hangs_soft",
+        "character_hangs_hard",
+        r#"{ shape = "character", height = 0.1, count = 2000 }"#,
+        r#"{ formula = "y > 0.07" }"#
+    ),
+    hanging!(
+        "bunny_hangs_soft",
+        "bunny_hangs_hard",
+        r#"{ shape = "bunny", height = 0.1, count = 2000 }"#,
+        r#"{ formula = "y > 0.07" }"#
+    ),
+    hanging!(
+        "ring_hangs_soft",
+        "ring_hangs_hard",
+        r#"{ shape = "torus", ring = 0.03, tube = 0.012, centre = [0, 0.085, 0], count = 2000 }"#,
+        r#"{ formula = "y > 0.085" }"#
+    ),
+    hanging!(
+        "ball_hangs_soft",
+        "ball_hangs_hard",
+        r#"{ shape = "ellipsoid", semi_axes = [0.05, 0.05, 0.05], centre = [0, 0.05, 0], count = 2000 }"#,
+        r#"{ formula = "y > 0.07" }"#
+    ),
+];
+
 pub(super) const CASES: &[Case] = &[
     WEIGHT,
     Case {

@@ -29,6 +29,7 @@ mod moving_frame;
 mod network;
 mod octree;
 mod patch;
+mod point_cells;
 mod pressure;
 mod resolution;
 mod rheology;
@@ -53,6 +54,7 @@ pub const TABLES: &[&[Case]] = &[
     rubber::CASES,
     thick_sphere::CASES,
     filling::CASES,
+    filling::BODIES.as_flattened(),
     cantilevers::CASES,
     cantilever_orders::CASES,
     elements::CASES,
@@ -90,6 +92,7 @@ pub const TABLES: &[&[Case]] = &[
     resolution::CASES,
     resolution::SPRINGS,
     levels::CASES,
+    point_cells::CASES,
     hands::CASES,
     tools::CASES,
     skins::CASES,
