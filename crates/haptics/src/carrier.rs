@@ -23,6 +23,8 @@ pub struct Rest {
     pub mass: f64,
     /// A world period [s].
     pub period: f64,
+    /// Whether the hand feels the tool where it was when the period began.
+    pub is_held: bool,
 }
 
 /// A hand with a tool.
@@ -47,12 +49,16 @@ struct HandState {
     since_tick: f64,
     /// Of what a force says of the body when the next one takes its place, at most so far [s].
     age: f64,
+    /// Where the tool was when the period began [m].
+    held: Vec3,
 }
 
 /// Numbers of a [`HandState`].
-const LEN: usize = 25;
+const LEN: usize = 28;
 /// A tick that lacks this part of it is over: times are sums.
 const ROUNDING: f64 = 1e-9;
+/// So near to the beginning of a period it begins [s]: times are sums.
+const AT_BEGINNING: f64 = 0.01 * TICK;
 /// The name of the parameter that tells whether a device is there.
 const HELD: &str = "held";
 
@@ -72,6 +78,7 @@ impl HandState {
             },
             since_tick: numbers[23],
             age: numbers[24],
+            held: vector(25),
         }
     }
 
@@ -81,7 +88,7 @@ impl HandState {
             numbers[at..at + values.len()].copy_from_slice(values);
             at += values.len();
         };
-        let Self { arm, tool, port, since_tick, age } = self;
+        let Self { arm, tool, port, since_tick, age, held } = self;
         for moving in [arm.hand.place, arm.hand.velocity] {
             put(&moving.to_array());
         }
@@ -90,6 +97,7 @@ impl HandState {
             put(&vector.to_array());
         }
         put(&[port.energy, port.engaged, port.jump, *since_tick, *age]);
+        put(&held.to_array());
     }
 }
 
@@ -102,6 +110,12 @@ impl HandCarrier {
     fn has_device(&self, state: &HandState) -> bool {
         let led = self.led.is_some() && self.is_held;
         led || (self.led.is_none() && self.arm.as_ref().is_some_and(|arm| !arm.is_lost(state.arm.time)))
+    }
+
+    /// Whether a time is the first of a period, to rounding.
+    fn begins_period(&self, time: f64) -> bool {
+        let (into, period) = (time / self.rest.period, self.rest.period);
+        (into - into.round()).abs() * period < AT_BEGINNING
     }
 
     /// The device moves on: led evenly to where it is to be at the end of the period, or held by the arm.
@@ -172,6 +186,9 @@ impl Carrier for HandCarrier {
             let pose = self.pose(memory);
             let history = &mut memory[LEN..];
             let h = left.min(TICK - state.since_tick);
+            if self.begins_period(state.arm.time) {
+                state.held = state.tool.place;
+            }
             let pressed = pressed(&pose);
             self.move_tool(h, &pressed, &mut state);
             self.move_device(h, history, &mut state);
@@ -180,7 +197,12 @@ impl Carrier for HandCarrier {
             if state.since_tick >= TICK * (1.0 - ROUNDING) {
                 state.since_tick = 0.0;
                 let device = self.has_device(&state).then_some(state.arm.hand.place);
-                self.rest.port.tick(&mut state.port, device, state.tool);
+                let felt = if self.rest.is_held {
+                    Moving { place: state.held, velocity: Vec3::ZERO }
+                } else {
+                    state.tool
+                };
+                self.rest.port.tick(&mut state.port, device, felt);
                 // what an implicit step tells is of its own end
                 state.age = state.age.max((state.arm.time - told).max(0.0) + TICK);
                 if let Some(arm) = &self.arm {

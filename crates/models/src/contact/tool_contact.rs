@@ -190,6 +190,12 @@ impl ToolContact {
         Self { shape_name: shape_name.into(), ..self }
     }
 
+    /// With the same stiffness of every triangle, whatever its area.
+    pub fn weighing_alike(mut self) -> Self {
+        self.shares.fill(1.0);
+        self
+    }
+
     pub fn law(&self) -> &ContactLaw {
         &self.law
     }

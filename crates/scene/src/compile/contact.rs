@@ -21,7 +21,7 @@ use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::scene::SkinInfo;
-use crate::spec::contact::{Against, Contact, Detect, ShapeSpec};
+use crate::spec::contact::{Against, Contact, Detect, ShapeSpec, Weighing};
 
 /// A body's points that touch, with the areas around them.
 pub(super) struct Touching {
@@ -103,7 +103,7 @@ pub(super) fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Optio
     let first = body.rows.start as u32;
     let contact_point = |(point, area): (u32, f64)| ContactPoint {
         row: first + point,
-        share: area / mean_area,
+        share: contact.weigh.share(area / mean_area),
         start: body.mesh.points[point as usize],
     };
     Some(Touching { points: chosen.into_iter().map(contact_point).collect(), mean_area })
@@ -227,7 +227,7 @@ fn against_shape(
         match tool_surface(draft, contact, body, &touching, built.as_ref())? {
             Some((surface, numbers)) => {
                 ToolContact::new(contact.name.clone(), surface, built, motion, stiff(contact, law), numbers)
-                    .map(|force| Box::new(force.against(&shape.name)) as _)
+                    .map(|force| Box::new(weighed(contact, force).against(&shape.name)) as _)
             }
             None => ShapeContact::new(contact.name.clone(), touching.points, built, motion, law)
                 .map(|force| Box::new(force.against(&shape.name)) as _),
@@ -252,6 +252,11 @@ pub(super) fn stiff(contact: &Contact, law: ContactLaw) -> ContactLaw {
     }
     let tangential_stiffness = contact.tangential_stiffness.unwrap_or(STIFFER * law.stiffness);
     ContactLaw { stiffness: STIFFER * law.stiffness, tangential_stiffness, ..law }
+}
+
+/// With its stiffness shared out as a contact says.
+pub(super) fn weighed(contact: &Contact, force: ToolContact) -> ToolContact {
+    if contact.weigh == Weighing::Alike { force.weighing_alike() } else { force }
 }
 
 /// The triangles of a body that a tool touches, with the reach [m] and the time [s] between searches, where a contact looks at
@@ -361,8 +366,8 @@ fn against_body(
     let reach = f64::max(mean_edge(&surfaces[0]), mean_edge(&surfaces[1])) + contact.thickness;
     let mut sides = bodies.iter().zip(surfaces).map(|(placed, surface)| {
         // one stiffness for each area on both sides, of which a point of the region's mean area has the whole
-        let shares =
-            super::bodies::point_areas(&surface).iter().map(|area| area / touching.mean_area).collect();
+        let share = |area: &f64| contact.weigh.share(area / touching.mean_area);
+        let shares = super::bodies::point_areas(&surface).iter().map(share).collect();
         let first = placed.rows.start as u32;
         let rows = surface.mesh_points.iter().map(|point| first + point).collect();
         ContactSurface { rows, shares, surface }

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use souple_engine::{Force, Motion};
-use souple_haptics::{HandCarrier, Rest};
+use souple_haptics::{Between, HandCarrier, Rest};
 use souple_math::Vec3;
 use souple_models::contact::{ShapeContact, ToolContact};
 use souple_models::loads::RigidMotion;
 
 use super::Draft;
-use super::contact::{built, law, modulus_of, stiff, tool_surface, touching};
+use super::contact::{built, law, modulus_of, stiff, tool_surface, touching, weighed};
 use super::motion::motion;
 use crate::diagnostic::Code;
 use crate::scene::HandInfo;
@@ -42,14 +42,15 @@ fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, Box<dyn Force>)>
     }
     let chosen = hand.device.as_ref()?;
     let device = (chosen.entry.build)(&chosen.values, intent);
-    let rest = Rest { port: hand.port, mass: hand.mass, period: draft.spec.world.period };
+    let is_held = hand.between == Between::Hold;
+    let rest = Rest { port: hand.port, mass: hand.mass, period: draft.spec.world.period, is_held };
     let carrier = Box::new(HandCarrier::new(rest, device.arm().cloned()));
     let force = hand.touch.name.clone();
     let made: Result<Box<dyn Force>, _> =
         match tool_surface(draft, &hand.touch, body, &touching, shape.as_ref())? {
             Some((surface, numbers)) => {
                 ToolContact::carried(force.clone(), surface, shape, carrier, stiff(&hand.touch, law), numbers)
-                    .map(|contact| Box::new(contact) as _)
+                    .map(|contact| Box::new(weighed(&hand.touch, contact)) as _)
             }
             None => ShapeContact::carried(force.clone(), touching.points, shape, carrier, law)
                 .map(|contact| Box::new(contact) as _),

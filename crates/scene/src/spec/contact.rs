@@ -51,6 +51,36 @@ pub(super) const DETECT: Key = Key::new(
     "the body's surface points, or its triangles: between these no tool is too thin, and through them none too fast; of a sphere, a capsule or jaws",
 )
 .or(Value::Text(DETECTIONS[0]));
+pub(super) const WEIGH: Key = Key::new(
+    "weigh",
+    Shape::Choice(&WEIGHINGS),
+    "whether the stiffness of each point or triangle is in proportion to its area, or all are alike, which depends on the mesh",
+)
+.or(Value::Text(WEIGHINGS[0]));
+const WEIGHINGS: [&str; 2] = ["area", "alike"];
+
+/// How the stiffness of a contact is shared out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weighing {
+    /// By the area around a point, or of a triangle.
+    Area,
+    Alike,
+}
+
+impl Weighing {
+    pub(super) fn named(name: &str) -> Self {
+        if name == WEIGHINGS[1] { Self::Alike } else { Self::Area }
+    }
+
+    /// The share of what has so much of the mean area.
+    pub fn share(self, of_mean_area: f64) -> f64 {
+        match self {
+            Self::Area => of_mean_area,
+            Self::Alike => 1.0,
+        }
+    }
+}
+
 const DETECTIONS: [&str; 2] = ["points", "triangles"];
 
 /// What of a body's surface is looked at.
@@ -83,6 +113,7 @@ pub(crate) static CONTACT: Keys = Keys::new(
             "of a point of mean area, or of each mass of a network; where left out, that of the body's material behind it; of a triangle of mean area, twenty times that of the material",
         ),
         DETECT,
+        WEIGH,
         FRICTION,
         DAMPING,
         TANGENTIAL_STIFFNESS,
@@ -118,6 +149,7 @@ pub struct Contact {
     pub region: Option<Region>,
     pub stiffness: Option<f64>,
     pub detect: Detect,
+    pub weigh: Weighing,
     pub friction: f64,
     pub damping: f64,
     pub tangential_stiffness: Option<f64>,
@@ -160,6 +192,7 @@ impl Contact {
             region: Region::read(reader, "region"),
             stiffness: reader.maybe_number("stiffness"),
             detect: Detect::named(reader.choice("detect")),
+            weigh: Weighing::named(reader.choice("weigh")),
             friction: reader.number("friction"),
             damping: reader.number("damping"),
             tangential_stiffness: reader.maybe_number("tangential_stiffness"),

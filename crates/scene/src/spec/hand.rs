@@ -6,7 +6,9 @@ use souple_models::contact::shape::BuildShape;
 use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec};
-use super::contact::{Contact, DAMPING, DETECT, Detect, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS};
+use super::contact::{
+    Contact, DAMPING, DETECT, Detect, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS, WEIGH, Weighing,
+};
 use super::region::Region;
 use crate::diagnostic::Site;
 use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
@@ -38,6 +40,7 @@ static TOUCH: Keys = Keys::new(
             "of a point of mean area; where left out, that of the body's material behind it; of a triangle, twenty times that",
         ),
         DETECT,
+        WEIGH,
         FRICTION,
         DAMPING,
         TANGENTIAL_STIFFNESS,
@@ -83,7 +86,7 @@ pub(crate) static HAND: Keys = Keys::new(
         Key::new(
             "between",
             Shape::Choice(&BETWEEN),
-            "against the clock, what the tool does for the hand between two periods of the world",
+            "what the tool does for the hand between two periods of the world, against the clock; `hold` acts in every run",
         )
         .or(Value::Text(BETWEEN[0])),
     ],
@@ -131,6 +134,7 @@ impl HandSpec {
                 region: Region::read(reader, "region"),
                 stiffness: maybe("stiffness"),
                 detect: touch.as_ref().map_or(Detect::Points, |touch| Detect::named(touch.choice("detect"))),
+                weigh: touch.as_ref().map_or(Weighing::Area, |touch| Weighing::named(touch.choice("weigh"))),
                 friction: number("friction"),
                 damping: number("damping"),
                 tangential_stiffness: maybe("tangential_stiffness"),

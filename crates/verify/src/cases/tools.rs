@@ -59,6 +59,9 @@ const HELD_ON_LIVER: Case = Case {
     ..LIVER
 };
 
+/// Meshes of the numbers that the source has.
+const FAMILY: &str = "bodies.liver.levels={ cells = [28, 172] }";
+
 /// A law that stiffens by an exponential, a tool at 2 m/s, and intervals down to 4 µs where velocities change by more than 5 cm/s.
 const BRUTAL: &[&str] = &[
     "world.period=\"1 ms\"",
@@ -122,6 +125,46 @@ pub(super) const CASES: &[Case] = &[
         ..THROUGH_CUBE
     },
     LIVER,
+    Case {
+        id: "hand_jump_weighed_alike",
+        what: "the same without the weights of areas, every triangle as stiff as the others: contacts by penalty begin with no force, so that none of them jumps",
+        settings: &[
+            "hands.right.touch={ detect = \"triangles\", stiffness = \"400 N/m\", weigh = \"alike\" }",
+        ],
+        source: "V-43, the first of its ablations: what jumps in the source's mean force times area does not here",
+        ..LIVER
+    },
+    Case {
+        id: "hand_jump_in_touch",
+        what: "the same with a threshold of a tenth of a millimetre within which what is touched is held: as without it",
+        settings: &[
+            "hands.right.touch={ detect = \"triangles\", stiffness = \"400 N/m\", thickness = \"0.1 mm\" }",
+        ],
+        source: "V-43, the last of its ablations: hand_jump_liver has no threshold, and nothing is let go, as the penalty never pushes all the way out",
+        ..LIVER
+    },
+    Case {
+        id: "hand_jump_at_once",
+        what: "the same with a tool that the hand feels to go at once, at the beginning of each period, as far as it goes within one: above what V-43 allows",
+        settings: &["hands.right.between=\"hold\""],
+        reference: 0.062,
+        tolerance: Tolerance::Above,
+        source: "V-43, the second of its ablations: without progressive motion the jump appears, of 400 N/m times what the tool goes within 10 ms; 0.062 N is a twentieth of the greatest force",
+        mutation: "hands.right.between=\"interpolate\"",
+        ..LIVER
+    },
+    Case {
+        id: "levels_family",
+        capabilities: &["DEB-27"],
+        what: "tetrahedra of the coarsest of three meshes of the organ, of which 28, 172 and 1874 are asked for",
+        settings: &[FAMILY, "bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1874"],
+        reading: Reading::last("coarsest").after(1),
+        reference: 28.0,
+        tolerance: Tolerance::Relative(0.2),
+        source: "V-30: within 20 % of a requested number",
+        mutation: "bodies.liver.levels.cells=[60, 172]",
+        ..LIVER
+    },
     Case {
         id: "levels_small_budget",
         capabilities: &["DEB-39"],
