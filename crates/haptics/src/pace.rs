@@ -160,6 +160,28 @@ impl Histogram {
         self.longest
     }
 
+    /// How far from `wanted` this share of the periods is at most, either way [s], to a bin; of those beyond the bins the longest counts.
+    pub fn jitter(&self, wanted: f64, share: f64) -> f64 {
+        let of_bin = |(bin, count): (usize, &u64)| {
+            let (low, high) = (bin as f64 * BIN, (bin + 1) as f64 * BIN);
+            // to its farther end, but that of no period is beyond the longest
+            ((wanted - low).max(high.min(self.longest) - wanted), *count)
+        };
+        let mut all: Vec<(f64, u64)> = self.bins.iter().enumerate().map(of_bin).collect();
+        all.push((self.longest - wanted, self.beyond));
+        all.retain(|(_, count)| *count > 0);
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let needed = ((share * self.count() as f64).ceil() as u64).max(1);
+        let mut seen = 0;
+        for (off, count) in &all {
+            seen += count;
+            if seen >= needed {
+                return *off;
+            }
+        }
+        0.0
+    }
+
     /// Upper ends of bins that are not empty [s], and their counts.
     pub fn bins(&self) -> Vec<(f64, u64)> {
         let filled = self.bins.iter().enumerate().filter(|(_, count)| **count > 0);
@@ -183,6 +205,11 @@ mod tests {
         assert_eq!(histogram.quantile(1.0), 25e-3);
         assert!((histogram.share_within(1.2e-3) - 0.999).abs() < 1e-12);
         assert_eq!(histogram.share_within(1.0e-3), 0.0);
+        assert!((histogram.jitter(1e-3, 0.999) - 10e-6).abs() < 1e-12);
+        assert!((histogram.jitter(1e-3, 1.0) - 24e-3).abs() < 1e-12);
+        // a period of 0.5 ms is half a millisecond off, with a bin below it
+        histogram.push(0.504e-3);
+        assert!((histogram.jitter(1e-3, 0.999) - 0.5e-3).abs() < 1e-12);
         assert_eq!(histogram.bins().iter().map(|(_, count)| count).sum::<u64>(), 1000);
     }
 

@@ -19,7 +19,8 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted.get((share * last as f64).round() as usize).copied().unwrap_or(0.0)
 }
 
-fn of_periods(periods: &Histogram) -> Value {
+/// `wanted`: how long each is to be [s].
+fn of_periods(periods: &Histogram, wanted: f64) -> Value {
     json!({
         "count": periods.count(),
         "mean_ms": 1e3 * periods.mean(),
@@ -27,6 +28,7 @@ fn of_periods(periods: &Histogram) -> Value {
         "p99_ms": 1e3 * periods.quantile(0.99),
         "p99_9_ms": 1e3 * periods.quantile(0.999),
         "longest_ms": 1e3 * periods.longest(),
+        "jitter_99_9_ms": 1e3 * periods.jitter(wanted, 0.999),
         "share_within_1_2_ms": periods.share_within(IN_TIME),
         "histogram": periods.bins().iter().map(|(end, count)| json!([1e3 * end, count])).collect::<Vec<_>>(),
     })
@@ -72,7 +74,7 @@ impl InTime {
             "warnings": session.warnings,
             "devices": {
                 "priority": toll.priority,
-                "periods": of_periods(&toll.periods),
+                "periods": of_periods(&toll.periods, TICK),
                 "left_out": toll.left_out,
                 "load": toll.busy / (toll.periods.count().max(1) as f64 * toll.periods.mean()).max(TICK),
             },
@@ -100,7 +102,7 @@ impl InTime {
                     "rest": 1.0 - stages.total() / computing,
                 },
                 "budgets_set": world.budgets,
-                "begun": of_periods(&world.begun),
+                "begun": of_periods(&world.begun, period),
             },
         })
     }

@@ -214,6 +214,11 @@ pub const BENCHES: &[Bench] = &[
         run: hands::period,
     },
     Bench {
+        name: "real_time_ten_minutes",
+        what: "ten minutes of the organ in a hand that never rests, against the clock: drift, late periods, loads",
+        run: hands::ten_minutes,
+    },
+    Bench {
         name: "skin_step_128",
         what: "steps of a skin that fills 128^3 cells with a ball, drawn to another and tense, with its triangles [steps/s]",
         run: skins::step_128,

@@ -105,9 +105,10 @@ fn conclude(run: &InTime, session: &Session, arguments: &Arguments) -> End {
 fn print_summary(report: &Value) {
     let number = |pointer: &str| report.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN);
     print_line(format_args!(
-        "devices: {} periods, 99.9 % within {:.3} ms, longest {:.3} ms, {:.3} % within 1.2 ms ({})",
+        "devices: {} periods, 99.9 % within {:.3} ms and no more than {:.3} ms off one, longest {:.3} ms, {:.3} % within 1.2 ms ({})",
         number("/devices/periods/count"),
         number("/devices/periods/p99_9_ms"),
+        number("/devices/periods/jitter_99_9_ms"),
         number("/devices/periods/longest_ms"),
         100.0 * number("/devices/periods/share_within_1_2_ms"),
         report["devices"]["priority"].as_str().unwrap_or_default(),
@@ -119,6 +120,16 @@ fn print_summary(report: &Value) {
         100.0 * number("/world/load/p99"),
         number("/world/late"),
         number("/world/lost_seconds"),
+    ));
+    let share = |of: &str| 100.0 * number(&format!("/world/shares/{of}"));
+    print_line(format_args!(
+        "clock less world {:.2} ms at the end; of the time of computing {:.0} % pairs, {:.0} % forces, {:.0} % equations, {:.0} % advance, {:.0} % the rest",
+        1e3 * number("/world/drift_seconds"),
+        share("pairs"),
+        share("forces"),
+        share("solve"),
+        share("advance"),
+        share("rest"),
     ));
     for (name, hand) in report["hands"].as_object().into_iter().flatten() {
         let number = |key: &str| hand[key].as_f64().unwrap_or(f64::NAN);

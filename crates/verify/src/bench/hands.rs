@@ -8,23 +8,98 @@ use super::{Effort, Figure};
 /// Seconds on the clock.
 const QUICK: f64 = 2.0;
 const FULL: f64 = 60.0;
+/// Of V-36 [s].
+const TEN_MINUTES: f64 = 600.0;
+/// The hand that never rests, so that points come and go all the time: three centimetres in and out every three seconds.
+const RESTLESS: &str = r#"hands.right.motion={ formula = [0, 0, "-0.03 * (1 - cos(2*pi*t/3))"] }"#;
+/// Of the devices' loop [s].
+const TICK: f64 = 1e-3;
 /// A period that is still one of a millisecond [s].
 const IN_TIME: f64 = 1.2e-3;
+/// What V-42 allows a period to be off [s].
+const JITTER: f64 = 0.2e-3;
 
 struct Kept {
     run: InTime,
+    /// Of the world [s].
+    period: f64,
     bytes: usize,
 }
 
-fn keep(name: &str, duration: f64) -> Result<Kept, String> {
+fn keep(name: &str, settings: &[&str], duration: f64) -> Result<Kept, String> {
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
     let mut session =
-        Session::start(scene(name, &[])?, &Options::default()).map_err(|error| error.to_string())?;
-    let bytes = session.world.bytes();
+        Session::start(scene(name, &settings)?, &Options::default()).map_err(|error| error.to_string())?;
+    let (bytes, period) = (session.world.bytes(), session.world.model().period);
     let run =
         run_in_time(&mut session, duration, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
     match &session.failure {
         Some(failure) => Err(failure.message()),
-        None => Ok(Kept { run, bytes }),
+        None => Ok(Kept { run, period, bytes }),
+    }
+}
+
+/// What the periods of the world took of their time; the error is the share of periods that came late.
+fn load(name: &str, kept: &Kept) -> Figure {
+    let world = &kept.run.world;
+    Figure {
+        name: name.to_owned(),
+        value: world.loads.iter().sum::<f64>() / world.loads.len().max(1) as f64,
+        unit: "time of computing / time of the world",
+        higher_is_better: false,
+        error: world.late as f64 / world.periods.max(1) as f64,
+        error_of: "share of its periods that came late".to_owned(),
+        baseline: Some(1.0),
+        threads: rayon::current_num_threads(),
+        samples: world.loads.len(),
+        spread: 0.0,
+        bytes: kept.bytes,
+        by_processor: None,
+    }
+}
+
+/// What the budget keeps below the whole time of the world, also while the hand presses.
+fn worst(name: &str, kept: &Kept) -> Figure {
+    let mut loads = kept.run.world.loads.clone();
+    loads.sort_by(f64::total_cmp);
+    let at = ((loads.len() as f64 * 0.99) as usize).min(loads.len().saturating_sub(1));
+    Figure {
+        value: loads.get(at).copied().unwrap_or(0.0),
+        unit: "time of computing / time of the world, 99 % of periods below",
+        ..load(name, kept)
+    }
+}
+
+/// Ten minutes of a hand that never rests (V-36): how far the world is from the clock at the end, in its periods, with the time that was given up;
+/// and its loads, with the share of periods that came late.
+pub fn ten_minutes(effort: Effort) -> Result<Vec<Figure>, String> {
+    let liver = keep("hand_on_liver", &[RESTLESS], effort.choose(QUICK, TEN_MINUTES))?;
+    let world = &liver.run.world;
+    Ok(vec![
+        Figure {
+            name: "real_time_drift".to_owned(),
+            value: world.drift.abs() / liver.period,
+            unit: "periods of the world that the clock is ahead at the end",
+            error: world.lost,
+            error_of: "s given up".to_owned(),
+            ..load("", &liver)
+        },
+        Figure { baseline: Some(1e-3), ..late("real_time_late", &liver) },
+        load("real_time_load", &liver),
+        worst("real_time_load_99", &liver),
+    ])
+}
+
+/// The share of periods that came late; the error is that of periods above 95 % of their time.
+fn late(name: &str, kept: &Kept) -> Figure {
+    let world = &kept.run.world;
+    let above = world.loads.iter().filter(|load| **load > 0.95).count();
+    Figure {
+        value: world.late as f64 / world.periods.max(1) as f64,
+        unit: "share of its periods that came late",
+        error: above as f64 / world.loads.len().max(1) as f64,
+        error_of: "share of its periods with a load above 95 %".to_owned(),
+        ..load(name, kept)
     }
 }
 
@@ -32,38 +107,10 @@ fn keep(name: &str, duration: f64) -> Result<Kept, String> {
 /// of periods above 1.2 ms, that beside the loads the share of periods of the world that came late.
 pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
     let duration = effort.choose(QUICK, FULL);
-    let liver = keep("hand_on_liver", duration)?;
-    let block = keep("hand_on_block", duration.min(10.0))?;
+    let liver = keep("hand_on_liver", &[], duration)?;
+    let block = keep("hand_on_block", &[], duration.min(10.0))?;
     let periods = &liver.run.served.toll.periods;
     let threads = rayon::current_num_threads();
-    let load = |name: &str, kept: &Kept| {
-        let world = &kept.run.world;
-        Figure {
-            name: name.to_owned(),
-            value: world.loads.iter().sum::<f64>() / world.loads.len().max(1) as f64,
-            unit: "time of computing / time of the world",
-            higher_is_better: false,
-            error: world.late as f64 / world.periods.max(1) as f64,
-            error_of: "share of its periods that came late".to_owned(),
-            baseline: Some(1.0),
-            threads,
-            samples: world.loads.len(),
-            spread: 0.0,
-            bytes: kept.bytes,
-            by_processor: None,
-        }
-    };
-    // what the budget keeps below the whole time of the world, also while the hand presses
-    let worst = |name: &str, kept: &Kept| {
-        let mut loads = kept.run.world.loads.clone();
-        loads.sort_by(f64::total_cmp);
-        let at = ((loads.len() as f64 * 0.99) as usize).min(loads.len().saturating_sub(1));
-        Figure {
-            value: loads.get(at).copied().unwrap_or(0.0),
-            unit: "time of computing / time of the world, 99 % of periods below",
-            ..load(name, kept)
-        }
-    };
     Ok(vec![
         Figure {
             name: "haptic_period_99_9".to_owned(),
@@ -76,6 +123,20 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             threads,
             samples: periods.count() as usize,
             spread: (periods.quantile(0.75) - periods.quantile(0.25)) / (2.0 * periods.quantile(0.5)),
+            bytes: liver.bytes,
+            by_processor: None,
+        },
+        Figure {
+            name: "haptic_jitter_99_9".to_owned(),
+            value: 1e3 * periods.jitter(TICK, 0.999),
+            unit: "ms off a millisecond, 99.9 % of periods below",
+            higher_is_better: false,
+            error: 1e3 * periods.jitter(TICK, 1.0),
+            error_of: "ms off at most".to_owned(),
+            baseline: Some(1e3 * JITTER),
+            threads,
+            samples: periods.count() as usize,
+            spread: 0.0,
             bytes: liver.bytes,
             by_processor: None,
         },
