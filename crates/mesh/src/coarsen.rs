@@ -41,9 +41,9 @@ fn radius_ratio([a, b, c, d]: [Vec3; 4]) -> f64 {
 /// # Errors
 /// None of the sizes can be filled: the last failure.
 pub fn coarser(mesh: &Mesh, size: f64) -> Result<Mesh, MeshError> {
-    let mut best = attempt(mesh, size);
+    let mut best = attempt(mesh, size, Vec3::ZERO);
     for factor in OTHERS {
-        let other = attempt(mesh, factor * size);
+        let other = attempt(mesh, factor * size, Vec3::ZERO);
         best = match (best, other) {
             (Ok(best), Ok(other)) if other.0 > best.0 => Ok(other),
             (Err(_), other) => other,
@@ -64,6 +64,17 @@ pub enum CoarsenError {
 
 /// How far from the number of tetrahedra wanted a mesh may be, relatively.
 const OFF_COUNT: f64 = 0.2;
+/// Places of the lattice that are tried, in cells, until one has the count: of few tetrahedra a whole layer comes or goes with it.
+const SHIFTS: [[f64; 3]; 8] = [
+    [0.0, 0.0, 0.0],
+    [0.5, 0.0, 0.0],
+    [0.0, 0.5, 0.0],
+    [0.0, 0.0, 0.5],
+    [0.25, 0.25, 0.25],
+    [0.75, 0.25, 0.25],
+    [0.25, 0.75, 0.25],
+    [0.25, 0.25, 0.75],
+];
 /// Sizes that are tried until the count is about right.
 const ROUNDS: usize = 12;
 
@@ -73,15 +84,39 @@ const ROUNDS: usize = 12;
 /// # Errors
 /// No size gives as many, or none can be filled.
 pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError> {
-    let off = |mesh: &Mesh| (mesh.cell_count() as f64 / wanted as f64).ln().abs();
+    let mut failure = CoarsenError::Count { wanted, nearest: 0 };
+    for shift in SHIFTS {
+        match of_count(mesh, wanted, Vec3::from_array(shift)) {
+            Ok(found) => return Ok(found),
+            // what came nearest is told
+            Err(CoarsenError::Count { nearest, .. }) => match &mut failure {
+                CoarsenError::Count { nearest: known, .. } if off(*known, wanted) <= off(nearest, wanted) => {
+                }
+                failure => *failure = CoarsenError::Count { wanted, nearest },
+            },
+            Err(error) if matches!(failure, CoarsenError::Count { nearest: 0, .. }) => failure = error,
+            Err(_) => {}
+        }
+    }
+    Err(failure)
+}
+
+/// How far a number of tetrahedra is from the one wanted.
+fn off(count: usize, wanted: usize) -> f64 {
+    (count as f64 / wanted as f64).ln().abs()
+}
+
+/// The mesh of about `wanted` tetrahedra from a lattice that is moved by so many cells.
+fn of_count(mesh: &Mesh, wanted: usize, shift: Vec3) -> Result<Mesh, CoarsenError> {
     let fits = |mesh: &Mesh| (mesh.cell_count() as f64 / wanted as f64 - 1.0).abs() <= OFF_COUNT;
+    let off = |mesh: &Mesh| off(mesh.cell_count(), wanted);
     // of regular tetrahedra, V = N a³/(6 √2)
     let mut size = (72.0_f64.sqrt() * mesh.volume() / wanted.max(1) as f64).cbrt();
     let mut nearest: Option<(f64, Mesh)> = None;
     let mut failure = None;
     for _ in 0..ROUNDS {
         let tried = size;
-        match attempt(mesh, size) {
+        match attempt(mesh, size, shift) {
             Ok((_, filled)) => {
                 size *= (filled.cell_count() as f64 / wanted as f64).cbrt();
                 if nearest.as_ref().is_none_or(|(_, nearest)| off(&filled) < off(nearest)) {
@@ -103,7 +138,7 @@ pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError
     };
     let mut best: Option<([f64; 2], Mesh)> = None;
     for factor in std::iter::once(1.0).chain(OTHERS) {
-        let Ok(other) = attempt(mesh, factor * size) else { continue };
+        let Ok(other) = attempt(mesh, factor * size, shift) else { continue };
         if fits(&other.1) && best.as_ref().is_none_or(|best| other.0 > best.0) {
             best = Some(other);
         }
@@ -112,9 +147,10 @@ pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError
 }
 
 /// The least and the mean radius ratio of a filling, and the filling.
-fn attempt(mesh: &Mesh, size: f64) -> Result<([f64; 2], Mesh), MeshError> {
+fn attempt(mesh: &Mesh, size: f64, shift: Vec3) -> Result<([f64; 2], Mesh), MeshError> {
     let values = Values::new().with("size", Value::Number(size)).completed(PARAMETERS);
-    let options = Options::from_values(&values.unwrap_or_else(|error| unreachable!("{error}")))?;
+    let options =
+        Options::from_values(&values.unwrap_or_else(|error| unreachable!("{error}")))?.shifted(shift);
     let filled = fill_mesh(mesh, RepairLimits::default(), &options)?.mesh;
     let ratios = radius_ratios(&filled);
     let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
@@ -152,7 +188,7 @@ mod tests {
         assert_eq!(radius_ratio([Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]), 0.0);
     }
 
-    /// V-30: a liver of 1874 and 172 tetrahedra, each number within a fifth, none flat, and no surface farther away than an edge is long.
+    /// V-30: a liver of 1874, 172 and 28 tetrahedra, each number within a fifth, none flat, and no surface farther away than an edge is long.
     #[test]
     fn families_have_the_counts_asked_for() {
         let entry = SHAPES.find("liver").unwrap();
@@ -161,7 +197,7 @@ mod tests {
         let options = Options::from_values(&size).unwrap();
         let fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
         let outside = fine.boundary_surface();
-        for wanted in [1874, 172] {
+        for wanted in [1874, 172, 28] {
             let mesh = coarser_of_count(&fine, wanted).unwrap();
             let count = mesh.cell_count();
             assert!((count as f64 / wanted as f64 - 1.0).abs() <= OFF_COUNT, "{wanted}: {count}");

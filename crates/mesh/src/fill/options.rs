@@ -7,7 +7,8 @@ use souple_table::{Parameter, Range, Value, Values, in_number, readable};
 use super::lattice::points_of;
 use super::{Cells, FillError, Grading, Part, Reach, Size, fill, lost};
 use crate::implicit::{Body, FormulaShape, Shape};
-use crate::{Cell, ElementKind, Mesh, MeshError, available_memory};
+
+use crate::{BoundingBox, Cell, ElementKind, Mesh, MeshError, available_memory};
 
 /// Parameters of every filling.
 pub const PARAMETERS: &[Parameter] = &[
@@ -53,6 +54,30 @@ pub struct Options {
     largest: Option<f64>,
     field: Option<(Formula, Reach)>,
     pub cells: Cells,
+    /// Of the lattice, in its cells.
+    shift: Vec3,
+}
+
+/// A shape in a larger box, in whose middle the lattice lies.
+struct Shifted<'a> {
+    shape: &'a dyn Shape,
+    /// Of the middle [m]; no component is below 0.
+    by: Vec3,
+}
+
+impl Shape for Shifted<'_> {
+    fn value(&self, point: Vec3) -> f64 {
+        self.shape.value(point)
+    }
+
+    fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
+        self.shape.range(within)
+    }
+
+    fn bounds(&self) -> BoundingBox {
+        let BoundingBox { low, high } = self.shape.bounds();
+        BoundingBox { low, high: high + self.by * 2.0 }
+    }
 }
 
 /// A filled shape.
@@ -156,7 +181,7 @@ impl Options {
             "voxels" => Cells::Voxels,
             _ => Cells::Tetrahedra,
         };
-        Ok(Self { wanted, growth, largest, field, cells })
+        Ok(Self { wanted, growth, largest, field, cells, shift: Vec3::ZERO })
     }
 
     fn size(&self, smallest: f64) -> Size {
@@ -204,12 +229,19 @@ impl Options {
         Ok(Filled { mesh, notes })
     }
 
+    /// With the lattice moved by so many of its cells, none below 0; of a size, not of a count.
+    pub fn shifted(self, shift: Vec3) -> Self {
+        Self { shift, ..self }
+    }
+
     /// The cells alone, and their size.
     pub(super) fn cells_of(&self, shape: &dyn Shape, parts: &[Part<'_>]) -> Result<(Mesh, Size), MeshError> {
         match self.wanted {
             Wanted::Size(size) => {
                 self.check_largest(size)?;
                 let size = self.size(size);
+                let shifted = Shifted { shape, by: self.shift * size.smallest };
+                let shape = if self.shift == Vec3::ZERO { shape } else { &shifted };
                 Ok((fill(shape, &size, self.cells, parts)?, size))
             }
             Wanted::Count(count) => self.fill_by_count(shape, parts, count),
