@@ -294,6 +294,11 @@ pub trait Force: Send + Sync {
     ) {
     }
 
+    /// The row and, in words, what of its memory or of what it is told by formulas cannot be at the end of a period; such a step is refused.
+    fn fault(&self, _at: &Configuration) -> Option<(usize, String)> {
+        None
+    }
+
     /// Whether a key read from a file is one that it could have written: an index beyond its data would be a panic.
     fn accepts_key(&self, _key: u64) -> bool {
         false

@@ -512,6 +512,14 @@ impl System {
         broke
     }
 
+    /// What of a force cannot be at the placed rows.
+    pub fn fault(&self, rows: &Rows, state: &SystemState, around: &Surroundings) -> Option<StepError> {
+        self.forces.iter().enumerate().find_map(|(index, force)| {
+            let (row, what) = force.fault(&self.view(index, rows, state, around))?;
+            Some(StepError::Fault { force: force.name().to_owned(), row, what, time: rows.time })
+        })
+    }
+
     /// Whether forces change their memory between steps.
     pub fn ends_steps(&self) -> bool {
         self.forces.iter().any(|force| force.ends_steps())

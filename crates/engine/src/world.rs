@@ -467,6 +467,10 @@ impl World {
             system.place_rows(&state.q, &state.v, end, &mut ws.rows);
         }
         ws.rows_are_committed = true;
+        let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
+        if let Some(error) = system.fault(&ws.rows, state, &around) {
+            return Err(WorldError { place: format!("system `{}`", system.name), error });
+        }
         // what no stage has claimed
         let claimed = ws.stages.total() - before;
         ws.stages.advance += (clock.elapsed().as_secs_f64() - claimed).max(0.0);

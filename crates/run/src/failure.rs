@@ -71,7 +71,9 @@ impl Failure {
             StepError::NewtonStalled { block, .. }
             | StepError::Linear { block: Some(block), .. }
             | StepError::MotionNotFinite { block, .. } => row_of(system, *block),
-            StepError::ForceNotFinite { row, .. } | StepError::SlopeNotFinite { row, .. } => Some(*row),
+            StepError::ForceNotFinite { row, .. }
+            | StepError::SlopeNotFinite { row, .. }
+            | StepError::Fault { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".v") => {
                 row_of(system, field.index)
@@ -85,7 +87,8 @@ impl Failure {
         let force = match error.error.cause() {
             StepError::ForceNotFinite { force, .. }
             | StepError::EnergyNotFinite { force, .. }
-            | StepError::SlopeNotFinite { force, .. } => Some(force.clone()),
+            | StepError::SlopeNotFinite { force, .. }
+            | StepError::Fault { force, .. } => Some(force.clone()),
             _ => None,
         };
         let spot = found.map(|(body, (part, row))| {

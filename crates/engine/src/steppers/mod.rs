@@ -125,6 +125,8 @@ pub enum StepError {
         "the slope of force `{force}` is not finite or too large to compute with (at row {row}, time {time} s): it is infinite there, or there is none"
     )]
     SlopeNotFinite { force: String, row: usize, time: f64 },
+    #[error("force `{force}`: {what} (at row {row}, time {time} s)")]
+    Fault { force: String, row: usize, what: String, time: f64 },
     #[error(
         "what touches changed {searches} times within a step, and with it where the step leads; take a smaller step or more load steps"
     )]

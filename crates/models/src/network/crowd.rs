@@ -107,8 +107,13 @@ impl Crowd {
         Self(description)
     }
 
+    /// Masses that have a temperature.
+    pub fn temperature_count(&self) -> usize {
+        self.0.fusible.as_ref().map_or(0, |_| self.mass_count())
+    }
+
     /// Numbers of a pair that the law remembers, and its bond behind them.
-    fn remembered_len(&self) -> usize {
+    pub fn remembered_len(&self) -> usize {
         self.0.law.memory_len() + usize::from(self.0.fusible.is_some())
     }
 
@@ -212,6 +217,18 @@ impl Crowd {
         (self.0.law.stiffest(self.0.range) + bond).max(hook)
     }
 
+    /// What the law stores in a pair that is as far apart as the range [J]; nothing of laws with memory, whose pairs begin there at rest.
+    fn stored_at_range(&self, time: f64) -> f64 {
+        let CrowdDescription { law, range, .. } = &self.0;
+        let reach = Reach { length: *range, before: *range, rest: *range };
+        let stored = match law.memory_len() {
+            0 => law.respond(&reach, &Moment::of(time), &[]).stored,
+            _ => 0.0,
+        };
+        // a law that has no number there has no end there either
+        if stored.is_finite() { stored } else { 0.0 }
+    }
+
     fn groups(&self) -> Groups<'_> {
         Groups { first: &self.0.first, second: &self.0.second }
     }
@@ -231,11 +248,11 @@ impl Crowd {
         &memory[HOOK..HOOK + self.0.law.memory_len()]
     }
 
-    /// `None` out of range.
+    /// `None` out of range, but for a bond that tears there.
     fn act(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
         let Standing { d, before, reach, .. } = *standing;
         if reach.length >= self.0.range {
-            return None;
+            return self.tear(standing, memory, at);
         }
         let mut next = *memory;
         let own = self.law_memory(memory);
@@ -262,6 +279,23 @@ impl Crowd {
             next[HOOK + self.0.law.memory_len()] = bond.rest;
         }
         Some(Act { axial: u * push, across, energy, memory: next })
+    }
+
+    /// What a bond gives off that was in range a step before: all that it stored.
+    fn tear(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
+        let bond_at = HOOK + self.0.law.memory_len();
+        let fusible = self.0.fusible.as_ref()?;
+        if memory[bond_at] == MOLTEN || standing.reach.before >= self.0.range {
+            return None;
+        }
+        let still = Reach { length: standing.reach.before, ..standing.reach };
+        let before = Standing { reach: still, ..*standing };
+        let heat = self.bond(fusible, &before, memory, at).stored;
+        let mut next = *memory;
+        next[..HOOK].copy_from_slice(&Hook::FREE.numbers());
+        next[bond_at] = MOLTEN;
+        let energy = Energy { stored: 0.0, dissipated: heat };
+        Some(Act { axial: Vec3::ZERO, across: Vec3::ZERO, energy, memory: next })
     }
 
     /// The same of a pair in State.
@@ -311,6 +345,9 @@ impl Crowd {
         let memory = self.recalled(known, standing.reach.length);
         let Some(act) = self.act(&standing, &memory, at) else { return Vec3::ZERO };
         task.heat += act.energy.dissipated;
+        if standing.reach.length >= self.0.range {
+            return Vec3::ZERO;
+        }
         let own = if self.0.friction.is_some() { 0 } else { HOOK };
         task.keep(pair, &act.memory[own..HOOK + self.remembered_len()]);
         act.axial + act.across
@@ -434,10 +471,12 @@ impl Force for Crowd {
         Box::new(Work::default())
     }
 
+    /// Stored energy counts from the range, so that it does not jump where pairs come and go.
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
-        let mut stored = 0.0;
+        let (mut stored, at_range) = (0.0, self.stored_at_range(at.time));
         self.visit_standing(at, Work::of(scratch), |standing, memory| {
-            stored += self.act(standing, memory, at).map_or(0.0, |act| act.energy.stored);
+            let act = self.act(standing, memory, at).filter(|_| standing.reach.length < self.0.range);
+            stored += act.map_or(0.0, |act| act.energy.stored - at_range);
         });
         Energy { stored, dissipated: at.memory[0] }
     }
@@ -547,6 +586,14 @@ impl Force for Crowd {
                 }
             }
         }
+    }
+
+    fn fault(&self, at: &Configuration) -> Option<(usize, String)> {
+        let fusible = self.0.fusible.as_ref()?;
+        let second = if self.groups().is_one() { 0..0 } else { self.0.second.clone() };
+        self.0.first.clone().chain(second).map(|row| row as usize).zip(&at.memory[1..]).find_map(
+            |(row, temperature)| Some((row, fusible.fault(*temperature, at.positions[row], at.time)?)),
+        )
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {

@@ -49,6 +49,14 @@ pub struct Task {
     batch: Batch,
 }
 
+/// What becomes of pairs that leave the range in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Leaving {
+    Forgotten,
+    /// They are looked at once more.
+    SeenOff,
+}
+
 /// Pairs in range that are looked at together; lengths in whole blocks of lanes.
 #[derive(Default)]
 pub struct Batch {
@@ -145,6 +153,7 @@ impl Batch {
         (balls, first_row): (Range<usize>, u32),
         (list, range, timestep): (&Neighbours, f64, f64),
         at: &Configuration,
+        leaving: Leaving,
         (first_slot, forces): (usize, &mut [Vec3]),
     ) {
         self.pairs.clear();
@@ -158,12 +167,13 @@ impl Batch {
                 let other = *other as usize;
                 let d = x - at.positions[other];
                 let length_sq = d.length_sq();
+                let before = d - (v - at.velocities[other]) * timestep;
                 // written so that what is not finite acts, and is found
-                if length_sq >= range_sq {
+                if length_sq >= range_sq && (leaving == Leaving::Forgotten || before.length_sq() >= range_sq)
+                {
                     forces[slot - first_slot] = Vec3::ZERO;
                     continue;
                 }
-                let before = d - (v - at.velocities[other]) * timestep;
                 self.pairs.push(((slot - first_slot) as u32, [row as u32, other as u32]));
                 self.ways.push([d, before]);
                 self.lengths[0].push(length_sq.sqrt());
@@ -237,7 +247,8 @@ impl Pass {
             for start in balls.clone().step_by(AT_HAND) {
                 let own = start..(start + AT_HAND).min(balls.end);
                 let mut batch = std::mem::take(&mut task.batch);
-                batch.gather((own, first_row), (list, range, timestep), at, (first_slot, forces));
+                let leaving = if are_plain { Leaving::Forgotten } else { Leaving::SeenOff };
+                batch.gather((own, first_row), (list, range, timestep), at, leaving, (first_slot, forces));
                 if are_plain {
                     task.batch = batch;
                     task.act_together(at, (law, range, friction), &mut known, forces);

@@ -5,6 +5,7 @@
 //! A bond pushes its ends apart by `φ = −s k (D − L0) − s Z (D − D^r)`, with `s = (θ_m − θ)/(θ_m − θ_s)` of the mean temperature `θ` of its
 //! ends, between 1, where matter is solid, and 0, where it has melted. There it is gone. Ends that are nearer than the reach below
 //! the melting point set: they get a bond at the length that they have, which pushes nothing, so that neither melting nor setting is a jump of forces.
+//! A bond that is drawn beyond the range of its crowd tears, and gives off what it stored.
 
 use souple_formal::Formula;
 use souple_math::Vec3;
@@ -112,6 +113,32 @@ impl Fusible {
         for ((temperature, flow), place) in temperatures.iter_mut().zip(flows).zip(places) {
             *temperature += timestep / self.capacity * (flow + self.inflow(place, time, *temperature));
         }
+    }
+
+    /// What of a mass cannot be, in words: a temperature that there is not, or heat that comes from nowhere.
+    pub fn fault(&self, temperature: f64, place: Vec3, time: f64) -> Option<String> {
+        let at = [place.x, place.y, place.z, time];
+        let value = |formula: &Formula| formula.evaluate(&at);
+        let is_well = |value: f64| value.is_finite() && value >= 0.0;
+        if let Some(heating) = self.heating.as_ref().map(value).filter(|heating| !heating.is_finite()) {
+            return Some(format!("a mass is heated by {heating} W; finite numbers are accepted"));
+        }
+        if let Some([exchange, ambient]) = self.exchange.as_ref().map(|both| both.each_ref().map(value)) {
+            if !is_well(exchange) {
+                return Some(format!(
+                    "a mass exchanges {exchange} W/K with what is around it; numbers from 0 W/K are accepted, below heat would run from cold to warm"
+                ));
+            }
+            if !is_well(ambient) {
+                return Some(format!("what is around a mass has {ambient} K; numbers from 0 K are accepted"));
+            }
+        }
+        (!is_well(temperature)).then(|| {
+            format!(
+                "the temperature of a mass has come to {temperature:.4e} K, and there is none but from 0 K on: take shorter steps or a greater `capacity`, \
+                 or heat and cool less"
+            )
+        })
     }
 
     /// `Te (Σ g + e)/c` of a mass with so many neighbours: beyond 1 temperatures swing from step to step.

@@ -43,9 +43,12 @@ impl LinkLaw for ElastoPlastic {
         4
     }
 
-    fn begin(&self, rest: f64, _: f64, memory: &mut [f64]) {
-        let [traction, compression] = self.yields;
-        memory.copy_from_slice(&[rest, traction / self.elastic, compression / self.elastic, self.tears]);
+    // what it begins beyond its thresholds has yielded before: the heat of that is none of the run's
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
+        let [traction, compression] = self.yields.map(|force| force / self.elastic);
+        let mut own = [rest, traction, compression, self.tears, 0.0];
+        self.respond(&Reach { length, before: length, rest }, &mut own);
+        memory.copy_from_slice(&own[..4]);
     }
 
     #[inline(always)]

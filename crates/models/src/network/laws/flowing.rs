@@ -24,8 +24,14 @@ impl LinkLaw for Bingham {
         1
     }
 
-    fn begin(&self, rest: f64, _: f64, memory: &mut [f64]) {
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
         memory[0] = rest;
+        if self.viscosity == 0.0 {
+            // nothing holds up what lies beyond a threshold: it has flowed before, and the heat of that is none of the run's
+            let mut own = [rest, 0.0, 0.0, 0.0, 0.0];
+            self.respond(&Reach { length, before: length, rest }, &mut own);
+            memory[0] = own[0];
+        }
     }
 
     #[inline(always)]

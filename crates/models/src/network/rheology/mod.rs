@@ -149,11 +149,10 @@ impl Network {
     pub fn rest_at(&self, deformation: f64, memory: &mut [f64]) {
         memory.fill(0.0);
         let (viscosity, stiffness) = self.slowest();
-        if viscosity > 0.0 {
-            // dampers without a spring relax at once: any time will do
-            let relaxation = if stiffness.is_finite() { viscosity / stiffness } else { 1.0 };
-            self.deform(deformation, FOR_EVER * relaxation, memory);
-        }
+        // dampers without a spring relax at once, and sliders without dampers slip at once: any time will do
+        let is_slow = viscosity > 0.0 && stiffness.is_finite();
+        let relaxation = if is_slow { viscosity / stiffness } else { 1.0 };
+        self.deform(deformation, FOR_EVER * relaxation, memory);
     }
 
     /// Hands the deformation and effort of a part down to its elements.
