@@ -528,3 +528,61 @@ fn automata_are_checked() {
         }
     }
 }
+
+/// Numbers of texts have the unit of what they are for, or one of its kind; names are nobody else's.
+#[test]
+fn texts_of_laws_are_checked() {
+    let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let build =
+        |law: &str, texts: &[(&'static str, &[(&str, &str)])], words: &[(&'static str, &'static str)]| {
+            let entry = LINKS.find(law).unwrap();
+            let texts: Vec<_> = texts.iter().map(|(name, pairs)| (*name, text(pairs))).collect();
+            let mut values = Values::new();
+            words.iter().for_each(|(name, text)| values.set(name, Value::Text(text)));
+            texts.iter().for_each(|(name, pairs)| values.set(name, Value::Texts(pairs)));
+            let values = entry.values(values).unwrap();
+            (entry.build)(&Making { values: &values, timestep: TE })
+                .map(|_| ())
+                .map_err(|error| error.to_string())
+        };
+    let network = |network: &'static str, parameters: &[(&str, &str)]| {
+        build("rheological", &[("parameters", parameters)], &[("network", network)])
+    };
+    let states = |state: &str| build("conditional", &[("states", &[("a", state), ("b", "")])], &[]);
+    let automaton = |texts: &[(&'static str, &[(&str, &str)])]| build("finite_state", texts, &[]);
+    let formula =
+        |parameters: &[(&str, &str)]| build("formula", &[("parameters", parameters)], &[("push", "-D")]);
+    for taken in [
+        network("spring(1 kN/m) - (damper(10 N s/m) | slider(5 N))", &[]),
+        network("spring(k) - damper(2 * z)", &[("k", "1 kN/m"), ("z", "3")]),
+        states("CHK, 50 N/mm; CHZ, 3 N s/m; SUP, L, 5 mm -> b; INF, dV, 1 m/s -> b"),
+        formula(&[("k", "5 kg")]),
+    ] {
+        assert_eq!(taken, Ok(()));
+    }
+    let a = [("a", "0")];
+    for (result, words) in [
+        (network("spring(10 kg)", &[]), "`10 kg` is a mass"),
+        (network("spring(1) - damper(3 N/m)", &[]), "`3 N/m` is"),
+        (network("slider(2 Pa) - spring(1)", &[]), "`2 Pa` is a pressure"),
+        (network("spring(k)", &[("k", "2 m")]), "`2 m` is a length"),
+        (states("CHK, 50 s; SUP, L, 1 -> b"), "`50 s` is a time"),
+        (states("CHZ, 3 m; SUP, L, 1 -> b"), "`3 m` is a length"),
+        (states("SUP, L, 5 kg -> b"), "`5 kg` is a mass"),
+        (states("SUP, dV, 5 m -> b"), "`5 m` is a length"),
+        (formula(&[("D", "2")]), "`parameters.D` has the name of a variable"),
+        (formula(&[("pi", "2")]), "`parameters.pi` has the name of a constant"),
+        (formula(&[("sin", "2")]), "`parameters.sin` has the name of a function"),
+        (automaton(&[("states", &a), ("memory", &[("L0", "2")])]), "`memory.L0` has the name of a variable"),
+        (automaton(&[("states", &a), ("parameters", &[("L0", "2")])]), "`parameters.L0` has the name"),
+        (
+            automaton(&[("states", &a), ("memory", &[("k", "2")]), ("parameters", &[("k", "3")])]),
+            "`parameters.k` has the name of a variable",
+        ),
+    ] {
+        let message = result.expect_err(words);
+        assert!(message.contains(words), "`{words}` is not in: {message}");
+    }
+}

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use souple_engine::LinkState;
-use souple_formal::{Formula, parse_quantity};
+use souple_formal::{CONSTANTS, Dimension, FUNCTIONS, Formula, parse_quantity, quantity_in};
 use souple_math::Vec3;
 
 use super::kernel::{LinkKernel, Moving};
@@ -224,11 +224,16 @@ impl<T: Copy> Arguments<T> {
     }
 }
 
-/// Numbers under names, in SI units, that formulas may refer to, beside `others`.
+/// Numbers under names, in SI units, that formulas may refer to, beside `others` of which some are `known`.
 ///
 /// # Errors
-/// A number that cannot be read or is not finite; too many of them.
-pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>, Vec<f64>), LinkError> {
+/// A number that cannot be read or is not finite; too many of them; a name that is known already.
+pub fn constants<'a>(
+    texts: &'a [(String, String)],
+    others: usize,
+    known: &[&str],
+) -> Result<(Vec<&'a str>, Vec<f64>), LinkError> {
+    check_names("parameters", texts.iter().map(|(name, _)| name.as_str()), known)?;
     if texts.len() + others > ARGUMENTS {
         let what = format!("are {}; at most {}", texts.len(), ARGUMENTS - others);
         return Err(LinkError::text("parameters", what));
@@ -246,6 +251,42 @@ pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>
         values.push(value);
     }
     Ok((texts.iter().map(|(name, _)| name.as_str()).collect(), values))
+}
+
+/// A number that is written with or without a unit, in SI units; `None` of what is a formula.
+///
+/// # Errors
+/// Its unit is of another kind than `unit`, in words.
+pub fn number_in(text: &str, unit: &str) -> Option<Result<f64, String>> {
+    let quantity = parse_quantity(text).ok()?;
+    if quantity.dimension == Dimension::PURE {
+        return Some(Ok(quantity.value));
+    }
+    Some(quantity_in(text, unit).map_err(|error| error.to_string()))
+}
+
+/// Refuses names that formulas know already: variables, constants and functions.
+///
+/// # Errors
+/// The first such name.
+pub fn check_names<'a>(
+    place: &str,
+    names: impl IntoIterator<Item = &'a str>,
+    known: &[&str],
+) -> Result<(), LinkError> {
+    let constants = || CONSTANTS.iter().map(|(name, _)| *name);
+    let functions = || FUNCTIONS.iter().map(|function| function.name);
+    for name in names {
+        let what = match name {
+            _ if known.contains(&name) => "a variable of the law",
+            _ if constants().any(|constant| constant == name) => "a constant",
+            _ if functions().any(|function| function == name) => "a function",
+            _ => continue,
+        };
+        let what = format!("has the name of {what}: take another");
+        return Err(LinkError::text(format!("{place}.{name}"), what));
+    }
+    Ok(())
 }
 
 /// Reads a formula of `variables`.

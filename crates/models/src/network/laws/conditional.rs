@@ -7,12 +7,12 @@
 use std::cell::Cell;
 
 use souple_engine::LinkState;
-use souple_formal::{Formula, parse_quantity};
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
 use crate::network::law::{AsksFor, LinkEntry, LinkError, Making, Moment, Reach, Response};
-use crate::network::written::{OneByOne, WrittenLaw, formula, formula_within};
+use crate::network::written::{OneByOne, WrittenLaw, check_names, formula, formula_within, number_in};
 
 /// Numbers that a link remembers: the state, `K`, `Z`, `L0`, and `dV` of the step before.
 const STATE: usize = 0;
@@ -276,6 +276,8 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
         "" => None,
         text => Some(formula("external", text, &["t"])?),
     };
+    let parameters = making.values.texts("parameters").iter().map(|(name, _)| name.as_str());
+    check_names("parameters", parameters, &["D", "L", "dV"])?;
     let reader = Words {
         names: &names,
         parameters: making.values.texts("parameters"),
@@ -412,10 +414,10 @@ impl Words<'_> {
             ["LN"] => state.without_elongation = true,
             ["VN"] => state.without_velocity = true,
             ["CHK", number] => {
-                state.entries.push(Disposition::Stiffness(self.positive(said, words, number)?));
+                state.entries.push(Disposition::Stiffness(self.positive(said, words, number, "N/m")?));
             }
             ["CHZ", number] => {
-                let damping = self.positive(said, words, number)? / self.timestep;
+                let damping = self.positive(said, words, number, "N s/m")? / self.timestep;
                 state.entries.push(Disposition::Damping(damping));
             }
             [words] if words.replace(' ', "") == "L0=D" => state.entries.push(Disposition::RestHere),
@@ -497,12 +499,13 @@ impl Words<'_> {
 
     /// A bound of a variable; velocities are given in m/s, and are lengths of a step within.
     fn bound(&self, said: Said, words: &str, variable: &str, number: &str) -> Result<f64, LinkError> {
-        let number = self.number(said, words, number)?;
+        let unit = if variable == "dV" { "m/s" } else { "m" };
+        let number = self.number(said, words, number, unit)?;
         Ok(if variable == "dV" { number * self.timestep } else { number })
     }
 
-    fn positive(&self, said: Said, words: &str, number: &str) -> Result<f64, LinkError> {
-        let value = self.number(said, words, number)?;
+    fn positive(&self, said: Said, words: &str, number: &str, unit: &str) -> Result<f64, LinkError> {
+        let value = self.number(said, words, number, unit)?;
         if value < 0.0 {
             refuse(said.place, format!("says `{words}`: a number of at least 0"))
         } else {
@@ -510,17 +513,18 @@ impl Words<'_> {
         }
     }
 
-    /// A number in SI units, a quantity or the name of a parameter.
-    fn number(&self, said: Said, words: &str, text: &str) -> Result<f64, LinkError> {
+    /// A number in SI units, a quantity of the kind of `unit` or the name of a parameter.
+    fn number(&self, said: Said, words: &str, text: &str, unit: &str) -> Result<f64, LinkError> {
         let named = self.parameters.iter().find(|(name, _)| name == text);
         let text = named.map_or(text, |(_, value)| value);
         let formula = || match named {
             Some((name, _)) => formula(&format!("parameters.{name}"), text, &[]),
             None => formula_within(said.place, said.text, text, &[]),
         };
-        let value = match parse_quantity(text) {
-            Ok(quantity) => quantity.value,
-            Err(_) => formula()?.evaluate(&[]),
+        let value = match number_in(text, unit) {
+            Some(Ok(value)) => value,
+            Some(Err(problem)) => return refuse(said.place, format!("says `{words}`: {problem}")),
+            None => formula()?.evaluate(&[]),
         };
         if value.is_finite() {
             Ok(value)

@@ -10,7 +10,8 @@ use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{
-    ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula, formula_within,
+    ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, check_names, constants, formula,
+    formula_within,
 };
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
@@ -182,9 +183,12 @@ fn text(place: impl Into<String>, what: impl Into<String>) -> LinkError {
 
 fn read(making: &Making) -> Result<FiniteState, LinkError> {
     let texts = |name| making.values.texts(name);
-    let (names, constants) = constants(texts("parameters"), VARIABLES.len() + WRITTEN_MEMORY)?;
-    let remembered: Vec<&str> =
-        ["L0"].into_iter().chain(texts("memory").iter().map(|(name, _)| name.as_str())).collect();
+    let own = || texts("memory").iter().map(|(name, _)| name.as_str());
+    let known: Vec<&str> = VARIABLES.into_iter().chain(["L0"]).collect();
+    check_names("memory", own(), &known)?;
+    let remembered: Vec<&str> = ["L0"].into_iter().chain(own()).collect();
+    let known: Vec<&str> = VARIABLES.into_iter().chain(remembered.iter().copied()).collect();
+    let (names, constants) = constants(texts("parameters"), VARIABLES.len() + WRITTEN_MEMORY, &known)?;
     if 1 + remembered.len() > WRITTEN_MEMORY {
         return Err(text(
             "memory",

@@ -110,7 +110,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
         Parameter::texts("parameters", "numbers that the formula names").or(Value::Texts(&[])),
     ],
     build: |making| {
-        let (names, constants) = constants(making.values.texts("parameters"), VARIABLES.len())?;
+        let (names, constants) = constants(making.values.texts("parameters"), VARIABLES.len(), &VARIABLES)?;
         let (push, energy) = (making.values.text("push"), making.values.text("energy"));
         let (kind, place, text) = match (push.is_empty(), energy.is_empty()) {
             (false, true) => (Kind::Push, "push", push),

@@ -1,11 +1,10 @@
 //! Any series and parallel network of springs, dampers and sliders, written as text.
 
-use souple_formal::parse_quantity;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::rheology::{self, Network};
-use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
+use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula, number_in};
 
 /// `φ = -Q(q)` with `q = D - S`; remembers the deformations of dampers and sliders.
 #[derive(Debug)]
@@ -61,14 +60,17 @@ pub const ENTRY: LinkEntry = LinkEntry {
 };
 
 fn read(making: &Making) -> Result<Rheological, LinkError> {
-    let (names, values) = constants(making.values.texts("parameters"), 0)?;
-    let number = |text: &str| match parse_quantity(text) {
-        Ok(quantity) => Ok(quantity.value),
-        Err(_) => match formula("network", text, &names) {
+    let texts = making.values.texts("parameters");
+    let (names, values) = constants(texts, 0, &[])?;
+    let number = |text: &str, unit: &str| {
+        // what stands for a parameter has the unit of that
+        let named = texts.iter().find(|(name, _)| name == text);
+        let written = named.map_or(text, |(_, value)| value);
+        number_in(written, unit).unwrap_or_else(|| match formula("network", text, &names) {
             Ok(formula) => Ok(formula.evaluate(&values)),
             Err(LinkError::Formula { error, .. }) => Err(error.without_place()),
             Err(error) => Err(error.to_string()),
-        },
+        })
     };
     let network = rheology::read(making.values.text("network"), &number).map_err(|error| {
         let what = format!("cannot be built: {}", error.without_place());

@@ -59,11 +59,14 @@ impl RheologyError {
     }
 }
 
-/// Reads a network; `number(text)` gives the value of a number in SI units.
+/// Gives the value in SI units of a number that is written in this unit, or one of its kind, or without.
+pub type ReadNumber<'a> = dyn Fn(&str, &str) -> Result<f64, String> + 'a;
+
+/// Reads a network; `number` gives the values of its numbers.
 ///
 /// # Errors
 /// Names the place, what was read and what would be accepted.
-pub fn read(text: &str, number: &dyn Fn(&str) -> Result<f64, String>) -> Result<Network, RheologyError> {
+pub fn read(text: &str, number: &ReadNumber) -> Result<Network, RheologyError> {
     let mut reader = Reader { text, at: 0, number, elements: 0, remembered: 0 };
     let network = reader.parallel(0)?;
     reader.skip_blanks();
@@ -87,7 +90,7 @@ pub fn read(text: &str, number: &dyn Fn(&str) -> Result<f64, String>) -> Result<
 struct Reader<'a> {
     text: &'a str,
     at: usize,
-    number: &'a dyn Fn(&str) -> Result<f64, String>,
+    number: &'a ReadNumber<'a>,
     elements: usize,
     remembered: usize,
 }
@@ -192,6 +195,11 @@ impl<'a> Reader<'a> {
         if !self.takes('(') {
             return Err(self.unexpected("`(` and a number"));
         }
+        let unit = match element {
+            "spring" => "N/m",
+            "damper" => "N s/m",
+            _ => "N",
+        };
         let mut numbers = Vec::new();
         loop {
             let (start, mut depth) = (self.at, 0_usize);
@@ -210,7 +218,7 @@ impl<'a> Reader<'a> {
             };
             let span = Span::new(start, start + len);
             let problem = |problem| RheologyError::Number { element, span, problem };
-            let value = (self.number)(span.of(self.text).trim()).map_err(problem)?;
+            let value = (self.number)(span.of(self.text).trim(), unit).map_err(problem)?;
             if !(value.is_finite() && value > 0.0) {
                 return Err(problem(format!("is {value}, but must be finite and above zero")));
             }
