@@ -24,7 +24,7 @@ pub mod spec;
 mod values;
 
 pub use adjust::Adjustable;
-pub use compile::{LawInfo, NetworkInfo};
+pub use compile::{FillInfo, LawInfo, NetworkInfo};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;

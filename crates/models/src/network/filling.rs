@@ -23,6 +23,8 @@ const FINEST: f64 = 1.0 / 256.0;
 const LEAST_GAIN: f64 = 1e-2;
 /// Of a search: it may creep along a ridge no longer.
 const MOST_MOVES: usize = 256;
+/// Cells about a place that are looked into before all balls are.
+const FAR: i64 = 8;
 /// Of a diameter: balls of a close packing are that far apart, but for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
@@ -48,6 +50,15 @@ pub enum Gaps {
     Left,
     /// Those that are farther than a radius get a ball below the sheet.
     Closed,
+}
+
+/// Where a surface is farthest from the balls below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// On the surface.
+    pub place: Vec3,
+    /// From there to the nearest ball's own surface [m].
+    pub width: f64,
 }
 
 /// Why there is no filling.
@@ -79,6 +90,20 @@ impl Filling {
         }
         self.pack(shape, &mut balls);
         if balls.places.is_empty() { Err(FillingError::NoRoom) } else { Ok(balls.places) }
+    }
+
+    /// The place of the surface that is farthest from all balls, of places a quarter of a diameter apart and from the widest of them on
+    /// uphill; `None` where no surface is within the bounds.
+    pub fn widest_gap(&self, shape: &dyn Shape, places: &[Vec3]) -> Option<Gap> {
+        let pitch = SHEET_PITCH * self.spacing;
+        let surface = Self { inset: 0.0, ..*self };
+        let mut balls = Balls::new(self.spacing);
+        places.iter().for_each(|place| balls.put(*place));
+        let candidates = surface.candidates(shape, pitch).into_iter();
+        let (_, seed) =
+            candidates.map(|place| (balls.clearance(place), place)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let (apart, place) = surface.widest_near(shape, seed, pitch, |place| balls.clearance(place));
+        Some(Gap { place, width: apart - 0.5 * self.spacing })
     }
 
     /// Balls at the depth of the inset.
@@ -135,7 +160,7 @@ impl Filling {
             if is_known {
                 continue;
             }
-            let (apart, place) = self.widest_near(shape, seed, pitch, balls);
+            let (apart, place) = self.widest_near(shape, seed, pitch, |place| balls.distance(place));
             known.add(place, ends.len() as u32);
             ends.push(place);
             if apart <= widest {
@@ -157,9 +182,15 @@ impl Filling {
 
     /// The place of the sheet near a place of it that is farthest from all balls, and how far: up the slope of the distance,
     /// by ever shorter steps.
-    fn widest_near(&self, shape: &dyn Shape, seed: Vec3, pitch: f64, balls: &Balls) -> (f64, Vec3) {
+    fn widest_near(
+        &self,
+        shape: &dyn Shape,
+        seed: Vec3,
+        pitch: f64,
+        distance: impl Fn(Vec3) -> f64,
+    ) -> (f64, Vec3) {
         let BoundingBox { low, high } = self.bounds;
-        let (mut best, mut step) = ((balls.distance(seed), seed), pitch);
+        let (mut best, mut step) = ((distance(seed), seed), pitch);
         let mut moves = 0;
         while step > FINEST * self.spacing && moves < MOST_MOVES {
             moves += 1;
@@ -171,7 +202,7 @@ impl Filling {
                 // no farther from where it began than the next candidates are
                 let is_on = (place - seed).length() <= 2.0 * pitch
                     && self.is_inside(shape, place, -1e-6 * self.spacing);
-                is_on.then(|| (balls.distance(place), place))
+                is_on.then(|| (distance(place), place))
             });
             match tried.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 // what gains next to nothing for its length would creep along ridges for ever
@@ -302,6 +333,32 @@ impl Balls {
         least
     }
 
+    /// From the nearest ball, however far that is; infinite where there is none.
+    fn clearance(&self, place: Vec3) -> f64 {
+        let mut reach = 1;
+        loop {
+            let mut least = f64::INFINITY;
+            self.cells.visit(place, reach, |other| {
+                least = least.min((self.places[other as usize] - place).length());
+            });
+            // all balls that near are in the cells looked at
+            if least <= reach as f64 * self.cells.size {
+                return least;
+            }
+            if reach > FAR {
+                let all = self.places.iter().map(|other| (*other - place).length());
+                return all.fold(f64::INFINITY, f64::min);
+            }
+            reach *= 2;
+        }
+    }
+
+    /// Puts a ball where there is known to be room.
+    fn put(&mut self, place: Vec3) {
+        self.cells.add(place, self.places.len() as u32);
+        self.places.push(place);
+    }
+
     /// Whether there was room.
     fn add(&mut self, place: Vec3) -> bool {
         let closest = NEARLY * self.cells.size;
@@ -310,8 +367,7 @@ impl Balls {
             is_free &= (self.places[other as usize] - place).length_sq() >= closest * closest;
         });
         if is_free {
-            self.cells.add(place, self.places.len() as u32);
-            self.places.push(place);
+            self.put(place);
         }
         is_free
     }
@@ -364,13 +420,25 @@ mod tests {
             for (gaps, widest) in [Gaps::Left, Gaps::Closed].into_iter().zip(&mut widest) {
                 let filling = Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds, gaps };
                 let balls = filling.fill(&sphere).unwrap();
+                let mut seen: f64 = 0.0;
                 for n in 0..20_000 {
                     let z = 1.0 - (2.0 * f64::from(n) + 1.0) / 20_000.0;
                     let (turn, r) = (2.399_963 * f64::from(n), (1.0 - z * z).sqrt());
                     let place = sphere.centre + Vec3::new(r * turn.cos(), r * turn.sin(), z) * sphere.radius;
                     let gap = balls.iter().map(|ball| (*ball - place).length()).fold(f64::INFINITY, f64::min);
-                    *widest = widest.max(gap / (0.5 * spacing) - 1.0);
+                    seen = seen.max(gap / (0.5 * spacing) - 1.0);
                 }
+                // what is told is on the surface, and as wide as any place that was looked at, but for how far those are apart
+                let gap = filling.widest_gap(&sphere, &balls).unwrap();
+                let nearest =
+                    balls.iter().map(|ball| (*ball - gap.place).length()).fold(f64::INFINITY, f64::min);
+                assert!((nearest - 0.5 * spacing - gap.width).abs() < 1e-12);
+                assert!(((gap.place - sphere.centre).length() - sphere.radius).abs() < 1e-9);
+                let told = gap.width / (0.5 * spacing);
+                // 20,000 places are (4 π/20,000)^½ = 0.025 radii of the sphere apart
+                let apart = 0.025 * sphere.radius / (0.5 * spacing);
+                assert!(told > seen - 0.5 * apart, "{told} is told and {seen} is seen");
+                *widest = widest.max(told.max(seen));
                 for (n, ball) in balls.iter().enumerate() {
                     assert!(balls[..n].iter().all(|other| (*other - *ball).length() >= NEARLY * spacing));
                 }
@@ -378,6 +446,20 @@ mod tests {
         }
         let [left, closed] = widest;
         assert!(closed < left && closed <= 1.2, "{left} and {closed} radii");
+    }
+
+    /// Balls deeper than they need be leave a gap of that depth, which is told.
+    #[test]
+    fn deep_balls_leave_wide_gaps() {
+        let (spacing, inset) = (0.1, 0.3);
+        let sphere = Sphere::new(Vec3::ZERO, 0.5);
+        let bounds = BoundingBox::of([sphere.centre]).grown(sphere.radius);
+        let filling = Filling { spacing, inset, depth: f64::INFINITY, bounds, gaps: Gaps::Closed };
+        let gap = filling.widest_gap(&sphere, &filling.fill(&sphere).unwrap()).unwrap();
+        // at least to the depth of the sheet, at most to the farthest place above it that is a diameter from all balls
+        assert!(gap.width > inset - 0.5 * spacing && gap.width < inset + spacing, "{gap:?}");
+        let none = Filling { bounds: BoundingBox::of([Vec3::ZERO]), ..filling };
+        assert_eq!(none.widest_gap(&sphere, &[Vec3::ZERO]), None);
     }
 
     /// A flat box is filled by a plane of balls; a shell is as deep as it is asked to be; what has no room is told.

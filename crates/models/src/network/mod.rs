@@ -24,7 +24,7 @@ mod view;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, Listing, PAIR_MEMORY};
-pub use filling::{Filling, FillingError, Gaps};
+pub use filling::{Filling, FillingError, Gap, Gaps};
 pub use force::{Account, LinkDescription, LinkStance, Links, REGISTERS, Wiring};
 pub use friction::{Friction, Grip, Hook, Phase, Slide};
 pub use fusible::Fusible;

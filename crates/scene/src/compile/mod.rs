@@ -32,7 +32,7 @@ pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
 pub(crate) use frames::hold_name;
 pub use hanging::OwnRows;
-pub use network::{LawInfo, NetworkInfo};
+pub use network::{FillInfo, LawInfo, NetworkInfo};
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -9,7 +9,7 @@ mod views;
 pub use controls::add as add_controls;
 pub use ends::size;
 pub use fill::fill_all;
-pub use summary::{LawInfo, NetworkInfo, networks};
+pub use summary::{FillInfo, LawInfo, NetworkInfo, networks};
 
 use std::ops::Range;
 

@@ -7,7 +7,7 @@ mod kept;
 mod objects;
 
 pub use contours::{ContourSpec, Way};
-pub use fill::FillSpec;
+pub use fill::{FillSpec, Filled};
 pub use fusible::FusibleSpec;
 pub use kept::FileSpec;
 

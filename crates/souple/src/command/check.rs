@@ -344,6 +344,7 @@ fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
             "pairs": law.pairs,
             "saved_pairs": law.saved,
             "state_dimension": law.remembers,
+            "temperatures": law.temperatures,
             "stiffest": law.stiffest,
             "parameters": parameters.collect::<Map<_, _>>(),
             "seconds_per_step": seconds,
@@ -361,6 +362,12 @@ fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
         "lightest": network.lightest,
         "lightest_algorithmic": network.lightest.map(|mass| mass / network.timestep.powi(2)),
         "laws": laws.collect::<Vec<_>>(),
+        "fills": network.fills.iter().map(|fill| json!({
+            "group": fill.group,
+            "balls": fill.balls,
+            "widest_gap": fill.widest_gap,
+            "seconds": fill.seconds,
+        })).collect::<Vec<_>>(),
     })
 }
 
@@ -378,6 +385,18 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
         let algorithmic = mass / network.timestep.powi(2);
         print_line(format_args!("    lightest mass m = {mass:.4e} kg, M = m/Te² = {algorithmic:.4e} N/m"));
     }
+    for fill in &network.fills {
+        let gap = fill.widest_gap.map(|radii| {
+            format!("; no place of the surface that was looked at is farther than {radii:.3} radii from one")
+        });
+        print_line(format_args!(
+            "    {}: {} fill a shape, in {:.2} s{}",
+            fill.group,
+            souple_table::counted(fill.balls as u64, "ball"),
+            fill.seconds,
+            gap.unwrap_or_default(),
+        ));
+    }
     if let [pairs, all] = network.pairs()
         && pairs < all
     {
@@ -394,9 +413,13 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
             (0, pairs) => format!("{}, ", souple_table::counted(pairs, "pair")),
             (links, _) => format!("{}, ", souple_table::counted(links, "link")),
         };
+        let temperatures = match law.temperatures as u64 {
+            0 => String::new(),
+            count => format!("{}, ", souple_table::counted(count, "temperature")),
+        };
         let stiffest = law.stiffest.map(|h| format!("takes {h:.4e} N/m of 4M, ")).unwrap_or_default();
         print_line(format_args!(
-            "    {} ({}): {links}{stiffest}{} in the state of each, {:.2} µs a step",
+            "    {} ({}): {links}{stiffest}{} in the state of each, {temperatures}{:.2} µs a step",
             law.force,
             law.law,
             souple_table::counted(law.remembers as u64, "number"),

@@ -1,13 +1,19 @@
 //! Masses that fill shapes, or stand where files have points, get their places.
 
+use std::time::Instant;
+
+use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_models::contact::Shape;
 use souple_models::contact::shape::ClosedSurface;
-use souple_models::network::Filling;
+use souple_models::network::{Filling, Gaps};
 
 use super::super::{Draft, contact, shape};
 use crate::diagnostic::Code;
-use crate::spec::network::{FillSpec, Network, Places};
+use crate::spec::network::{FillSpec, Filled, Network, Places};
+
+/// Of a radius: gaps that are wider by less are a radius wide.
+const ROUND: f64 = 1e-6;
 
 /// Fills what groups of masses are to fill, and reads what they are to stand at; what cannot be goes to the log.
 pub fn fill_all(draft: &mut Draft) {
@@ -38,12 +44,30 @@ pub fn fill_all(draft: &mut Draft) {
             continue;
         };
         let FillSpec { spacing, inset, depth, gaps, .. } = **fill;
-        match (Filling { spacing, inset, depth, bounds, gaps }).fill(shape.as_ref()) {
-            Ok(places) => drop(fill.places.set(places)),
+        let (filling, clock) = (Filling { spacing, inset, depth, bounds, gaps }, Instant::now());
+        let places = match filling.fill(shape.as_ref()) {
+            Ok(places) => places,
             Err(error) => {
                 draft.log.add(Code::OutOfRange, &fill.site, error.to_string(), "another `spacing`, or `box`");
+                continue;
             }
+        };
+        let seconds = clock.elapsed().as_secs_f64();
+        let widest = match gaps {
+            Gaps::Closed => filling.widest_gap(shape.as_ref(), &places),
+            Gaps::Left => None,
+        };
+        if let Some(gap) = widest.filter(|gap| gap.width > 0.5 * spacing * (1.0 + ROUND)) {
+            let Vec3 { x, y, z } = gap.place;
+            warnings.push(format!(
+                "{}: at ({x:.4}, {y:.4}, {z:.4}) the surface is {:.3} radii from the nearest ball of `{}`: none has room nearer to it, as in edges, \
+                 where a surface is bent or below an `inset`; smaller balls come nearer",
+                draft.place(&fill.site),
+                gap.width / (0.5 * spacing),
+                group.name,
+            ));
         }
+        drop(fill.filled.set(Filled { places, widest, seconds }));
     }
     for body in &draft.spec.bodies {
         if let Some((message, expected)) = body.network.as_ref().and_then(Network::too_many) {

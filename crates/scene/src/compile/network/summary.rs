@@ -1,9 +1,10 @@
 //! What a network is made of, for those who ask what it costs: masses, laws, memories, and its numbers in the algorithmic space.
 
-use souple_models::network::{Links, ViewedLinks};
+use souple_models::network::{Crowd, Links, ViewedLinks};
 use souple_table::Value;
 
 use super::super::Draft;
+use crate::spec::network::{Filled, MassGroup, Places};
 use crate::spec::units::from_algorithmic;
 
 /// What a network is made of.
@@ -19,6 +20,18 @@ pub struct NetworkInfo {
     /// Mass of the lightest that moves [kg]; none where all are fixed.
     pub lightest: Option<f64>,
     pub laws: Vec<LawInfo>,
+    pub fills: Vec<FillInfo>,
+}
+
+/// A group of masses that fills a shape.
+#[derive(Clone, Debug)]
+pub struct FillInfo {
+    pub group: String,
+    pub balls: usize,
+    /// From the surface to the nearest ball, where that is farthest, in radii; none where gaps are left.
+    pub widest_gap: Option<f64>,
+    /// What filling took [s].
+    pub seconds: f64,
 }
 
 /// Links of one law.
@@ -33,8 +46,10 @@ pub struct LawInfo {
     pub pairs: u64,
     /// Of encounters: those that there would be more if all layers met.
     pub saved: u64,
-    /// Numbers that each remembers: the dimension of its state.
+    /// Numbers that each remembers, or each pair of a crowd that is within its range: the dimension of its state.
     pub remembers: usize,
+    /// Of fusible crowds: masses with a temperature.
+    pub temperatures: usize,
     /// What a link takes of the bound `4M`: `K + 2Z` of a spring and damper [N/m]; none of crowds.
     pub stiffest: Option<f64>,
     /// Name, unit, and the number in SI units and in the algorithmic space.
@@ -69,6 +84,13 @@ impl NetworkInfo {
     }
 }
 
+fn fill(group: &MassGroup) -> Option<FillInfo> {
+    let Places::Filled(fill) = &group.places else { return None };
+    let Filled { places, widest, seconds } = fill.filled.get()?;
+    let widest_gap = widest.map(|gap| gap.width / (0.5 * fill.spacing));
+    Some(FillInfo { group: group.name.clone(), balls: places.len(), widest_gap, seconds: *seconds })
+}
+
 /// Of every network of a scene.
 pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
     let networks = draft.bodies.iter().filter_map(|body| Some((body, body.spec.network.as_ref()?)));
@@ -100,6 +122,7 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                     pairs: 0,
                     saved: 0,
                     remembers: of.remembered_len(),
+                    temperatures: 0,
                     stiffest: Some(of.stiffest()),
                     parameters: parameters(law),
                     force,
@@ -114,18 +137,20 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
             };
             let crowds = network.crowds.iter().enumerate().filter_map(|(index, crowd)| {
                 let law = crowd.law.as_ref()?;
+                let force =
+                    crowd.name.clone().unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name));
+                let of = system.forces.iter().find(|known| known.name() == force);
+                let of = of.and_then(|known| known.as_any().downcast_ref::<Crowd>());
                 Some(LawInfo {
-                    force: crowd
-                        .name
-                        .clone()
-                        .unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name)),
                     law: law.entry.name,
                     links: 0,
                     pairs: pairs(&crowd.of.iter().map(String::as_str).collect::<Vec<_>>()),
                     saved: crowd.kept_apart.iter().map(|of| pairs(&of.each_ref().map(String::as_str))).sum(),
-                    remembers: 0,
+                    remembers: of.map_or(0, Crowd::remembered_len),
+                    temperatures: of.map_or(0, Crowd::temperature_count),
                     stiffest: None,
                     parameters: parameters(law),
+                    force,
                 })
             });
             let moving = network.masses.iter().filter(|group| !group.is_fixed && group.places.count() > 0);
@@ -137,6 +162,7 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                 fixed: network.of_each(|group| group.is_fixed).filter(|fixed| *fixed).count(),
                 lightest: moving.map(|group| group.mass).reduce(f64::min),
                 laws: links.chain(crowds).collect(),
+                fills: network.masses.iter().filter_map(fill).collect(),
             }
         })
         .collect()

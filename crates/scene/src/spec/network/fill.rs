@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use souple_math::Vec3;
 use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
-use souple_models::network::Gaps;
+use souple_models::network::{Gap, Gaps};
 use souple_table::{Range, Value};
 
 use super::super::contact::SHAPE_ENTRY;
@@ -56,7 +56,16 @@ pub(super) static FILL: Keys = Keys::new(
     ],
 );
 
-/// A shape to be filled, and the places that this gave once it has been.
+/// What a filling gave.
+pub struct Filled {
+    pub places: Vec<Vec3>,
+    /// Where the surface is farthest from the balls.
+    pub widest: Option<Gap>,
+    /// What it took [s].
+    pub seconds: f64,
+}
+
+/// A shape to be filled, and what that gave once it has been.
 pub struct FillSpec {
     pub shape: Option<Chosen<BuildShape>>,
     pub mesh: Option<MeshSpec>,
@@ -69,8 +78,7 @@ pub struct FillSpec {
     pub gaps: Gaps,
     /// Corners [m].
     pub bounds: Option<[Vec3; 2]>,
-    /// [m]
-    pub places: OnceLock<Vec<Vec3>>,
+    pub filled: OnceLock<Filled>,
     pub site: Site,
 }
 
@@ -89,13 +97,13 @@ impl FillSpec {
             depth: reader.maybe_number("depth").unwrap_or(f64::INFINITY),
             gaps: if reader.choice("gaps") == "closed" { Gaps::Closed } else { Gaps::Left },
             bounds: reader.corners("box").map(|[a, b]| [a.min_components(b), a.max_components(b)]),
-            places: OnceLock::new(),
+            filled: OnceLock::new(),
             site: reader.site(),
         }
     }
 
     /// None before it has been filled.
     pub fn places(&self) -> &[Vec3] {
-        self.places.get().map_or(&[], Vec::as_slice)
+        self.filled.get().map_or(&[], |filled| &filled.places)
     }
 }
