@@ -71,6 +71,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("network_free_fall", include_str!("../../../scenes/network_free_fall/scene.toml")),
     ("network_friction", include_str!("../../../scenes/network_friction/scene.toml")),
     ("network_lattice", include_str!("../../../scenes/network_lattice/scene.toml")),
+    ("network_limits", include_str!("../../../scenes/network_limits/scene.toml")),
     ("network_oscillator", include_str!("../../../scenes/network_oscillator/scene.toml")),
     ("network_spin", include_str!("../../../scenes/network_spin/scene.toml")),
     ("network_switched", include_str!("../../../scenes/network_switched/scene.toml")),

@@ -176,12 +176,12 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["JIM-16"],
         what: "a relay with a dead zone of 12 mm: all or nothing, -5 N at -20 mm",
         settings: &[
-            r#"networks.sample.links[0].law={ name = "formula", push = "F * (if(D - L0 < -e, 1, 0) - if(D - L0 > e, 1, 0))", parameters = { F = 5, e = 0.012 } }"#,
+            r#"networks.sample.links[0].law={ name = "formula", push = "F * (if(D - L0 < -zone, 1, 0) - if(D - L0 > zone, 1, 0))", parameters = { F = 5, zone = 0.012 } }"#,
         ],
         reading: PULL.after(12),
         reference: -5.0,
         source: "specification §2.8.2: plus or minus, with a dead zone",
-        mutation: "networks.sample.links[0].law.parameters.e=0.021",
+        mutation: "networks.sample.links[0].law.parameters.zone=0.021",
         ..WORDS
     },
     Case {

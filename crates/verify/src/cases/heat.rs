@@ -105,14 +105,4 @@ pub(super) const CASES: &[Case] = &[
         mutation: r#"networks.wax.crowds[0].law={ name = "ball", threshold = 0.02, stiffness = 300, damping = 0.02 }"#,
         ..WAX
     },
-    Case {
-        id: "wax_has_run",
-        what: "height of the topmost ball then: below half of what it was",
-        reading: Reading::last("top"),
-        reference: 0.0275,
-        tolerance: Tolerance::AtMost,
-        source: "matter that melts does not keep its shape; the topmost centres began at 0.055 m, of which what is solid keeps nearly all: a half is ours",
-        mutation: "networks.wax.crowds[0].fusible.melting=480",
-        ..WAX
-    },
 ];

@@ -53,6 +53,11 @@ const AGGLOMERATE: Case = Case {
     ..OSCILLATOR
 };
 
+/// The same friction at any speed of sliding.
+const DRY: &str = "networks.belt.crowds[0].friction={ static = 0.6, kinetic = 0.3, stiffness = 100000, damping = 300, speed = 0.002 }";
+
+const ELASTIC_RIM: &str = r#"parameters.rim={ name = "spring", stiffness = 10000 }"#;
+
 /// Places that are as good as random.
 const SHAKEN: &str = r#"networks.group.start={ displacement = ["0.4 * sin(97 * x + 131 * z)", 0, "0.4 * sin(71 * x + 53 * z)"] }"#;
 
@@ -165,14 +170,27 @@ pub(super) const CASES: &[Case] = &[
         ..SQUARE
     },
     Case {
+        id: "plastic_square_keeps_most",
+        capabilities: &["JIM-57", "JIM-86"],
+        what: "the same loses less than a quarter of what the links alone lose, 0.117 of 36 m²",
+        settings: &[EXCLUSION],
+        // 36 (1 - 0.117/4)
+        reference: 34.947,
+        tolerance: Tolerance::AtLeast,
+        source: "EXP-27: a loss of less than a quarter of that of EXP-26, area 0.883 [V]",
+        mutation: "parameters.exclusion.threshold=0.94",
+        ..SQUARE
+    },
+    Case {
         id: "ball_on_square_presses",
         capabilities: &["JIM-57", "JIM-87"],
         what: "area of a square of plastic links after a ball of 100 kg fell on it from ten metres, and was lifted off",
         scene: "ball_on_square",
         // 0.332 of 36 m² [V]
         reference: 11.952,
-        tolerance: Tolerance::Relative(0.1),
-        source: "EXP-28: area 0.332 of that before, a tenth of it for an impact",
+        // twice what it changes by between 480 and 2000 steps a second, 12.39 to 12.14 m²: once for either program
+        tolerance: Tolerance::Absolute(0.5),
+        source: "EXP-28: area 0.332 of that before [V], by a program of its own",
         mutation: EXCLUSION,
         ..SQUARE
     },
@@ -189,19 +207,56 @@ pub(super) const CASES: &[Case] = &[
         ..SQUARE
     },
     Case {
+        id: "ball_on_square_bulges_right",
+        capabilities: &["JIM-57", "JIM-87"],
+        what: "how far to the right the same reaches then, which began at 6 m: by more than a centimetre, which it would not under its own weight",
+        scene: "ball_on_square",
+        settings: &[EXCLUSION],
+        reading: Reading::last("right"),
+        reference: 6.01,
+        tolerance: Tolerance::Above,
+        source: "EXP-29: matter bulges sideways",
+        mutation: "networks.square.masses.ball.mass=0.01",
+        ..SQUARE
+    },
+    Case {
+        id: "ball_on_square_bulges_left",
+        capabilities: &["JIM-57", "JIM-87"],
+        what: "and to the left, where it began at 0 m",
+        scene: "ball_on_square",
+        settings: &[EXCLUSION],
+        reading: Reading::last("left"),
+        reference: -0.01,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-29: matter bulges sideways",
+        mutation: "networks.square.masses.ball.mass=0.01",
+        ..SQUARE
+    },
+    Case {
         id: "ball_on_rim_keeps_perimeter",
         capabilities: &["JIM-57", "JIM-87"],
-        what: "perimeter of the same with elastic links around its rim alone",
+        what: "perimeter of a square of plastic links whose rim is of elastic ones, after the ball fell on it",
         scene: "ball_on_square",
-        settings: &[
-            r#"parameters.law={ name = "spring_damper", stiffness = 0, damping = 0 }"#,
-            r#"parameters.rim={ name = "spring_damper", stiffness = 10000, damping = 20 }"#,
-        ],
+        settings: &[ELASTIC_RIM],
         reading: Reading::last("perimeter"),
         reference: 24.0,
         tolerance: Tolerance::Relative(0.01),
         source: "EXP-30: perimeter within 1 %, area free",
         mutation: r#"parameters.rim={ name = "elasto_plastic", stiffness = 10000, hardening = 500, traction = 50 }"#,
+        ..SQUARE
+    },
+    Case {
+        id: "ball_on_rim_frees_area",
+        capabilities: &["JIM-57", "JIM-87"],
+        what: "area of the same: no more than a shape has whose rim is pressed in",
+        scene: "ball_on_square",
+        settings: &[ELASTIC_RIM],
+        // 0.452 of 36 m² [V]
+        reference: 16.272,
+        // twice what the other scene changes by with the step: between 480 and 2000 steps a second this one does by 0.17 m², and what is open of it, the damping of the rim, by 0.6
+        tolerance: Tolerance::Absolute(1.0),
+        source: "EXP-30: perimeter 1.001, area 0.452 [V]: area free",
+        mutation: EXCLUSION,
         ..SQUARE
     },
     Case {
@@ -257,6 +312,33 @@ pub(super) const CASES: &[Case] = &[
         ..SQUARE
     },
     Case {
+        id: "full_bar_bends",
+        capabilities: &["JIM-57", "JIM-88"],
+        what: "height of the ends of the same under its weight: on the ground, as those of the bar without exclusion",
+        scene: "plastic_bar",
+        settings: &[EXCLUSION],
+        reading: Reading::last("ends").after(600),
+        reference: 0.5,
+        // as of plastic_bar_bends
+        tolerance: Tolerance::Absolute(0.01),
+        source: "EXP-32: the same bend",
+        mutation: r#"parameters.law={ name = "spring_damper", stiffness = 20000, damping = 20 }"#,
+        ..SQUARE
+    },
+    Case {
+        id: "full_bar_stays_bent",
+        capabilities: &["JIM-57", "JIM-88"],
+        what: "and without its weight, as of plastic_bar_stays_bent",
+        scene: "plastic_bar",
+        settings: &[EXCLUSION],
+        reading: Reading::last("ends"),
+        reference: 1.625,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-32: the same bend; sag 2.4 to 2.5 [V]",
+        mutation: r#"parameters.law={ name = "spring_damper", stiffness = 300, damping = 20 }"#,
+        ..SQUARE
+    },
+    Case {
         id: "block_stays_stretched",
         what: "what stays of the stretch of a block of plastic links, five in series, sixteen side by side, pulled by 240 N",
         // 5 (15 - 10)/250
@@ -306,6 +388,18 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(1e-3),
         source: "EXP-47: permanent curvature by plastic links alone",
         mutation: "parameters.face.traction=30",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "bar_bends_to_its_plastic_face",
+        capabilities: &["JIM-59"],
+        what: "height of the middle of the same where its lower face has yielded and grown: below that of a straight bar by more than still swings",
+        scene: "bar_bends_by_itself",
+        reading: Reading::last("middle"),
+        reference: 0.499,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-47: permanent curvature toward the plastic side",
+        mutation: "parameters.face.traction=1000",
         ..OSCILLATOR
     },
     Case {
@@ -362,23 +456,13 @@ pub(super) const CASES: &[Case] = &[
         ..AGGLOMERATE
     },
     Case {
-        id: "agglomerate_arrangement",
-        what: "share of the neighbours on the lattice that are neighbours at the end: the lattice gathers nearly whole",
-        reading: Reading::last("kept"),
-        reference: 0.9,
-        tolerance: Tolerance::AtLeast,
-        source: "EXP-37 asks for different arrangements, and gives no measure; nine tenths of the bonds, ours, tells these two apart",
-        mutation: SHAKEN,
-        ..AGGLOMERATE
-    },
-    Case {
         id: "agglomerate_arrangement_again",
-        what: "the same from the shaken start, whose end has as many bonds: others",
+        what: "share of the 49 neighbours on the lattice that are neighbours at the end of the shaken start: another arrangement keeps fewer than the 46 that the start on the lattice does",
         settings: &[SHAKEN],
         reading: Reading::last("kept"),
-        reference: 0.9,
+        reference: 45.0 / 49.0,
         tolerance: Tolerance::AtMost,
-        source: "as of agglomerate_arrangement: ours",
+        source: "EXP-37: different internal arrangements",
         mutation: "networks.group.start={ displacement = [0, 0, 0] }",
         ..AGGLOMERATE
     },
@@ -424,6 +508,18 @@ pub(super) const CASES: &[Case] = &[
         ..STACK
     },
     Case {
+        id: "heap_runs_out",
+        capabilities: &["JIM-28"],
+        what: "how far a heap has run out whose support was drawn away: beyond where that stood",
+        scene: "heap_collapses",
+        reading: Reading::last("front"),
+        reference: 0.55,
+        tolerance: Tolerance::Above,
+        source: "EXP-35: collapse when a support is removed",
+        mutation: "networks.sand.pins[1].motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+        ..OSCILLATOR
+    },
+    Case {
         id: "heap_rests_again",
         capabilities: &["JIM-28"],
         what: "kinetic energy of a heap that ran out after its support was drawn away",
@@ -439,12 +535,12 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "fluid_is_level_again",
         capabilities: &["JIM-31"],
-        what: "height of the centre of mass of a fluid of balls after a finger left it: that of before, by energy level",
+        what: "height of the centre of mass of a fluid of balls after a finger left it: no more than before, -0.4998 m, and one ball of fifty on top of the others",
         scene: "medium",
         reading: Reading::last("height"),
-        reference: -0.496,
-        // a bin of one ball in 50 higher by S
-        tolerance: Tolerance::Absolute(0.02),
+        // S/50 above
+        reference: -0.4798,
+        tolerance: Tolerance::AtMost,
         source: "EXP-03: level again after a press",
         mutation: "parameters.cohesion=10000",
         ..OSCILLATOR
@@ -452,7 +548,19 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "fluid_is_level",
         capabilities: &["JIM-31"],
-        what: "relief of a fluid that holds together weakly, in columns of a ball, after a finger has pressed into it and left",
+        what: "relief of a fluid of balls that attract each other by 50 N/m, in columns of a ball, after a finger has pressed into it by three diameters and left",
+        scene: "medium",
+        reading: Reading::last("relief"),
+        reference: 0.6,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-03: level again after a slow press of 3 S, the root of the mean square of heights at most 0.6 S",
+        mutation: "parameters.cohesion=3000",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "fluid_is_level_sooner",
+        capabilities: &["JIM-31"],
+        what: "the same at 20 N/m",
         scene: "medium",
         settings: &["parameters.cohesion=20"],
         reading: Reading::last("relief"),
@@ -481,7 +589,7 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["JIM-32"],
         what: "how high grains fly that a finger throws which leaves at 12 m/s: more than six diameters over the surface, and no higher than at twice its speed",
         scene: "medium",
-        settings: &["parameters.cohesion=1e-9", "parameters.leave=6.57"],
+        settings: &["parameters.cohesion=1e-9", "parameters.leave=6.57", "parameters.deepest=-5.8"],
         reading: Reading::last("top").taking(Statistic::Max),
         // between 1.4 + 6 and 1.4 + 24²/(2 9.81)
         reference: 19.1,
@@ -503,6 +611,20 @@ pub(super) const CASES: &[Case] = &[
         ..OSCILLATOR
     },
     Case {
+        id: "dermis_is_rearranged",
+        capabilities: &["JIM-34", "JIM-35", "JIM-89"],
+        what: "share of the bonds of the dermis of the same that are left after the fall",
+        scene: "elastic_kernel",
+        reading: Reading::last("kept"),
+        // 2 to 8 of 68 change
+        reference: 0.926_470_588,
+        // 3 of 68
+        tolerance: Tolerance::Absolute(0.044_2),
+        source: "EXP-33: 2 to 8 of 68 neighbour bonds changed [V]",
+        mutation: "world.gravity=[0, 0, 0]",
+        ..OSCILLATOR
+    },
+    Case {
         id: "kernel_is_strained",
         capabilities: &["JIM-34", "JIM-90"],
         what: "sum of the sides of a plastic kernel of 6.74 m after a fall of ten metres",
@@ -514,6 +636,32 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(0.155),
         source: "EXP-34: permanent strain of the kernel",
         mutation: "networks.thing.links[0].law.traction=100000",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "kernel_is_strained_more",
+        capabilities: &["JIM-34", "JIM-90"],
+        what: "the same after a fall of twenty metres: less than the specification has after ten",
+        scene: "plastic_kernel",
+        settings: &["parameters.height=20"],
+        reading: Reading::last("kernel"),
+        reference: 6.12,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-34: permanent kernel strain growing with impact",
+        mutation: "parameters.height=10",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "elastic_dermis_keeps_bonds",
+        capabilities: &["JIM-34", "JIM-35", "JIM-90"],
+        what: "share of the bonds of the dermis of a plastic kernel that are left after its fall",
+        scene: "plastic_kernel",
+        reading: Reading::last("kept"),
+        // 77 of 80
+        reference: 0.9625,
+        tolerance: Tolerance::AtLeast,
+        source: "EXP-34: the dermis keeps its neighbours, 77 of 80 bonds [V]",
+        mutation: "networks.thing.objects.thing.matter.cohesion=100",
         ..OSCILLATOR
     },
     Case {
@@ -741,6 +889,37 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(1e-3),
         source: "specification §2.14.6: the hook is a Maxwell element",
         mutation: "networks.belt.crowds[0].friction.hook_viscosity=1010",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "hook_holds_up_to_its_peak",
+        capabilities: &["JIM-46", "JIM-48"],
+        what: "greatest stretch of the spring of a mass on a belt that runs slowly: where it pulls by 0.6 of 10 N",
+        scene: "bow",
+        settings: &[DRY, r#"networks.belt.pins[0].motion.formula[0]="0.02 * t""#],
+        reading: Reading::last("place").taking(Statistic::Max),
+        reference: 0.06,
+        // v²/(2 3 N/m) = 7e-5 m beyond it, and z v/k = 4e-5 m short of it
+        tolerance: Tolerance::Absolute(1.1e-4),
+        source: "EXP-39: peak μ_s N",
+        mutation: "networks.belt.crowds[0].friction.static=0.602",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "hook_slides_on_its_plateau",
+        capabilities: &["JIM-45", "JIM-48"],
+        what: "stretch of the same under which the belt slides, where a damper of 20 N s/m keeps the mass from swinging: 0.3 of 10 N",
+        scene: "bow",
+        settings: &[
+            DRY,
+            r#"networks.belt.links[0].law={ name = "spring_damper", stiffness = 100, damping = 20 }"#,
+        ],
+        reading: Reading::last("place"),
+        reference: 0.03,
+        // the belt, a ball of 10 km that has come 0.8 m, leans by 8e-5
+        tolerance: Tolerance::Relative(4e-4),
+        source: "EXP-39: plateau μ_c N",
+        mutation: "networks.belt.crowds[0].friction.kinetic=0.301",
         ..OSCILLATOR
     },
     Case {

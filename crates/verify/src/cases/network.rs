@@ -36,6 +36,30 @@ const MODE: Case = Case {
     ..OSCILLATOR
 };
 
+/// A chain and a cluster at the edge of stability.
+const LIMIT: Case = Case {
+    capabilities: &["JIM-94"],
+    scene: "network_limits",
+    source: "EXP-51: q' = (2 - (κ + ζ) λ) q - (1 - ζ λ) q_before from rest, stable up to (κ + 2 ζ) λ = 4",
+    ..OSCILLATOR
+};
+
+const CHAIN: Case = Case {
+    reading: Reading::last("chain").after(200),
+    // rounding, which grows as they do
+    tolerance: Tolerance::Relative(1e-11),
+    mutation: "networks.chain.masses.free.mass=1.00001",
+    ..LIMIT
+};
+
+const CLUSTER: Case = Case {
+    capabilities: &["JIM-94", "JIM-26"],
+    reading: Reading::last("cluster").after(10),
+    tolerance: Tolerance::Absolute(1e-13),
+    mutation: "networks.cluster.masses.balls.mass=1.00001",
+    ..LIMIT
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "network_free_fall",
@@ -273,6 +297,79 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(2e-2),
         source: "F_t = -K_t D_acc (specification §2.14.3)",
         mutation: "networks.table.crowds[0].friction.static=0.45",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "chain_just_stable",
+        what: "a mass of a chain of ten in its fastest mode after 200 steps, its links at 1.02 of their 4M/λ = 1.02067",
+        settings: &["parameters.chain.stiffness=1069547.52"],
+        reference: -2.940_971_650_302_620_7,
+        ..CHAIN
+    },
+    Case {
+        id: "chain_just_unstable",
+        what: "the same at 1.0215: what was a tenth of a metre has grown to 158 km",
+        settings: &["parameters.chain.stiffness=1071120.384"],
+        reference: 158_110.737_055_827_04,
+        ..CHAIN
+    },
+    Case {
+        id: "damped_chain_just_stable",
+        what: "the same with dampers, K + 2Z at 1.02",
+        settings: &["parameters.chain.stiffness=524288", "parameters.chain.damping=266.24"],
+        reference: 5.678_066_773_912_985e-2,
+        ..CHAIN
+    },
+    Case {
+        id: "damped_chain_just_unstable",
+        what: "the same with K + 2Z at 1.022",
+        settings: &["parameters.chain.stiffness=524288", "parameters.chain.damping=267.264"],
+        reference: 0.261_013_724_166_939_3,
+        ..CHAIN
+    },
+    Case {
+        id: "cluster_just_stable",
+        what: "a ball of a tetrahedron of four that breathes, after 100 steps, K = 0.99 M",
+        settings: &["parameters.stiffness=1038090.24", "parameters.damping=0"],
+        reading: Reading::last("cluster").after(100),
+        reference: 0.033_912_209_436_047_74,
+        // places of 0.35 m, after a hundred steps that turn by half a circle each
+        tolerance: Tolerance::Absolute(1e-12),
+        ..CLUSTER
+    },
+    Case {
+        id: "cluster_just_unstable",
+        what: "the same after five steps, K = 1.01 M",
+        settings: &["parameters.stiffness=1059061.76", "parameters.damping=0"],
+        reading: Reading::last("cluster").after(5),
+        reference: -0.047_114_681_321_675_6,
+        ..CLUSTER
+    },
+    Case {
+        id: "damped_cluster_just_stable",
+        what: "the same with damping after forty steps, K + 2Z = 0.98 M",
+        settings: &["parameters.stiffness=629145.6", "parameters.damping=194.56"],
+        reading: Reading::last("cluster").after(40),
+        reference: 6.218_500_445_269_59e-5,
+        ..CLUSTER
+    },
+    Case {
+        id: "damped_cluster_just_unstable",
+        what: "the same after ten steps, K + 2Z = 1.02 M",
+        settings: &["parameters.stiffness=629145.6", "parameters.damping=215.04"],
+        reference: 0.011_458_484_968_762_477,
+        ..CLUSTER
+    },
+    Case {
+        id: "sand_heap_stands",
+        capabilities: &["JIM-28"],
+        what: "height of the topmost ball of a heap on rough ground: more than two diameters",
+        scene: "sand_heap",
+        reading: Reading::last("top"),
+        reference: 0.2,
+        tolerance: Tolerance::Above,
+        source: "EXP-35: a stable heap, higher than 2 S with rough ground",
+        mutation: "networks.sand.crowds[0].friction={ static = 0, kinetic = 0, stiffness = 1, speed = 0.01 }",
         ..OSCILLATOR
     },
     Case {

@@ -19,6 +19,10 @@ const PLASTIC: Case = Case {
 
 const TE: &str = "world.period=0.0033333333333333335";
 
+const BURGER_HUNG: &str = r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#;
+const TEN_NEWTONS_FOR_A_SECOND: &str =
+    r#"networks.sample.loads=[{ region = "lead", force = ["if(t < 0.9999, -10, 0)", 0, 0] }]"#;
+
 const MAXWELL: Case = Case {
     capabilities: &["JIM-52", "JIM-56"],
     settings: &[
@@ -483,6 +487,31 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(1e-11),
         source: "f' = A (D - D^r) + B f and V' = V + Te (F - f)/m from rest",
         mutation: "networks.sample.links[0].law.viscosity=100.1",
+        ..PLASTIC
+    },
+    Case {
+        id: "creep_burger",
+        capabilities: &["JIM-53", "JIM-56", "JIM-99"],
+        what: "creep: Burger's link under 10 N for a second, at its end: Q/k2 at once, Q/k1 after a delay and Q t/z2 by flow",
+        settings: &[TE, BURGER_HUNG, "networks.sample.pins=[]", TEN_NEWTONS_FOR_A_SECOND],
+        reading: Reading::component("stretch", 0).after(300),
+        reference: -0.035_026_659_665_983_27,
+        tolerance: Tolerance::Relative(1e-11),
+        source: "EXP-43: the elements of the link each by differences over a step, and V' = V + Te (F - Q)/m from rest",
+        mutation: "networks.sample.links[0].law.fluid_viscosity=501",
+        ..PLASTIC
+    },
+    Case {
+        id: "burger_recovers",
+        capabilities: &["JIM-53", "JIM-56", "JIM-99"],
+        what: "the same two seconds after it was let go: what has flowed stays, the impulse over z2",
+        settings: &[TE, BURGER_HUNG, "networks.sample.pins=[]", TEN_NEWTONS_FOR_A_SECOND],
+        reading: Reading::component("stretch", 0).after(900),
+        reference: -0.02,
+        // what is left of the delayed part, exp(-2 k1/(z1 (1 + k1/k2))) and less, and rounding
+        tolerance: Tolerance::Relative(1e-10),
+        source: "EXP-43: recovery of the instantaneous and of the delayed part",
+        mutation: "networks.sample.links[0].law.fluid_viscosity=501",
         ..PLASTIC
     },
 ];
