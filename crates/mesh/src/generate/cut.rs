@@ -13,7 +13,7 @@ pub(super) enum Cut {
     /// Six tetrahedra around the diagonal (Kuhn).
     Tetrahedra,
     Hexahedra,
-    /// Two prisms with their axes along x, triangles in the plane of y and z.
+    /// Two prisms with their axes along x where nothing else is said, triangles in the plane of y and z.
     Prisms,
     /// Six pyramids with their apices at the centre of the cube.
     Pyramids,
@@ -152,6 +152,7 @@ const BASES: [[usize; 4]; 6] =
 /// Faces of `BASES` by the axis of the cube that they end.
 pub(super) const BASE_X_MAX: usize = 3;
 pub(super) const BASE_X_MIN: usize = 5;
+pub(super) const BASE_Y_MAX: usize = 4;
 pub(super) const BASE_Z_MAX: usize = 1;
 
 /// One block for each kind, so that a mesh has few.

@@ -8,13 +8,15 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_table::Value;
 
-use super::cut::{BASE_X_MAX, Blocks, CORNERS, Cut};
+use super::cut::{BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX, Blocks, CORNERS, Cut};
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) struct Grid {
     cells: [usize; 3],
     /// How the cubes of each layer across x are cut.
     zones: Vec<Zone>,
+    /// The face of each cube that its prisms lie towards. Corners are numbered as `prisms` has them: towards x both are one.
+    prism_end: usize,
 }
 
 impl Grid {
@@ -26,7 +28,7 @@ impl Grid {
             return Err(unfit(name, counts, "at least 4 cubes along x for `mixed`"));
         }
         let zone = |i: usize| if cut == Cut::Mixed { mixed(i, cells[0]) } else { Zone::Uniform(cut) };
-        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect() })
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), prism_end: BASE_X_MAX })
     }
 
     /// Cubes cut by the part of the length that their middle is in; `parts` are cuts and where they end, as fractions of
@@ -46,7 +48,12 @@ impl Grid {
             let part = parts.iter().find(|(_, end)| middle < *end).or(parts.last());
             Zone::Uniform(part.map_or(Cut::Hexahedra, |(cut, _)| *cut))
         };
-        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect() })
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), prism_end: BASE_X_MAX })
+    }
+
+    /// The same with prisms along another axis of the grid: their triangles lie across it.
+    pub(super) fn with_prisms_along(self, axis: usize) -> Self {
+        Self { prism_end: [BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX][axis], ..self }
     }
 
     pub(super) fn size(&self) -> MeshSize {
@@ -82,7 +89,7 @@ impl Grid {
                     };
                     match self.zones[i] {
                         Zone::Uniform(Cut::Hexahedra) => blocks.push(ElementKind::Hex8, &corners),
-                        Zone::Uniform(Cut::Prisms) => blocks.prisms(corners),
+                        Zone::Uniform(Cut::Prisms) => blocks.prisms_towards(corners, self.prism_end),
                         Zone::Uniform(Cut::Pyramids) => blocks.pyramids(corners, centre(), None),
                         Zone::Uniform(Cut::Centred) => blocks.centred_tetrahedra(corners, centre()),
                         Zone::Uniform(Cut::Tetrahedra | Cut::Mixed) => blocks.kuhn_tetrahedra(corners),

@@ -12,6 +12,7 @@ use super::grid::Grid;
 use super::{Build, GeneratorEntry};
 use crate::{Mesh, MeshError};
 
+static AXES: [&str; 3] = ["x", "y", "z"];
 const FRACTION: Range = Range { high_included: true, ..Range::open(0.0, 1.0) };
 
 pub(super) static BAR_OF_PARTS: GeneratorEntry = GeneratorEntry {
@@ -26,6 +27,8 @@ pub(super) static BAR_OF_PARTS: GeneratorEntry = GeneratorEntry {
             "kinds of cells from x_min on: tet4, hex8, prism6, pyramid5, in any order",
         ),
         Parameter::numbers("ends", "", FRACTION, "where each part ends, as a fraction of the length"),
+        Parameter::choice("prism_axis", &AXES, "axis along which prisms lie, their triangles across it")
+            .or(Value::Text("x")),
         Parameter::vector("origin", "m", "the corner of least x, y, z").or(Value::Vector([0.0; 3])),
     ],
     build: Build { size: |values| Ok(grid(values)?.size()), mesh: bar },
@@ -57,7 +60,8 @@ fn grid(values: &Values) -> Result<Grid, MeshError> {
         return Err(unfit("ends", Value::Numbers(ends), &expected));
     }
     let parts: Vec<(Cut, f64)> = cuts.into_iter().zip(ends.iter().copied()).collect();
-    Grid::of_parts("cells", values.vector("cells"), &parts)
+    let axis = AXES.iter().position(|axis| *axis == values.text("prism_axis")).unwrap_or(0);
+    Ok(Grid::of_parts("cells", values.vector("cells"), &parts)?.with_prisms_along(axis))
 }
 
 fn unfit(name: &'static str, value: Value, expected: &str) -> MeshError {

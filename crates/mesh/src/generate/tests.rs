@@ -105,6 +105,19 @@ fn bars_of_parts_have_their_counts() {
     assert!((mesh.volume() - 8.0).abs() < 1e-11, "{}", mesh.volume());
     // prisms end in triangles, pyramids begin with squares: 64 of them, and as many between hexahedra and tetrahedra
     assert_eq!(mesh.conformity().split.len(), 128);
+    // along z they meet the pyramids in squares, and fill as much
+    let values = Values::new()
+        .with("size", Value::Vector([8.0, 1.0, 1.0]))
+        .with("cells", Value::Vector([8.0, 2.0, 2.0]))
+        .with("elements", Value::Text("prism6 pyramid5"))
+        .with("ends", Value::Numbers(&[0.5, 1.0]));
+    for (axis, split) in [("x", 4), ("y", 0), ("z", 0)] {
+        let mut mesh =
+            generate("bar_of_parts", values.clone().with("prism_axis", Value::Text(axis))).unwrap();
+        assert!(mesh.validate().unwrap().rewound_cells.is_empty(), "{axis}");
+        assert!((mesh.volume() - 8.0).abs() < 1e-13, "{axis}");
+        assert_eq!(mesh.conformity().split.len(), split, "{axis}");
+    }
     let refused = |elements: &'static str, ends: &[f64]| {
         bar_of_parts([4.0, 1.0, 1.0], elements, ends).unwrap_err().to_string()
     };
