@@ -118,8 +118,8 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "exp41_differences",
-        capabilities: &["FAU-90"],
-        what: "the same with tangent products by differences of forces",
+        capabilities: &["FAU-90", "FAU-41"],
+        what: "the same with tangent products by differences of forces, without a matrix",
         settings: &[ST_VENANT_KIRCHHOFF, PRODUCTS, r#"bodies.bar.tangent="difference""#],
         ..SWINGING
     },

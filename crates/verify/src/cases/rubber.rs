@@ -28,7 +28,9 @@ const PULLED: Case = Case {
     reading: Reading::component("pull", 0),
     refinement: None,
     reference: f64::NAN,
-    tolerance: Tolerance::Relative(1e-8),
+    // Newton's method leaves 1e-12 of the largest force, and free sides are less than a hundred times as soft as what is pulled: 18 times
+    // at rest, the bulk modulus over the shear modulus
+    tolerance: Tolerance::Relative(1e-10),
     source: "closed form; Holzapfel 2000, Nonlinear Solid Mechanics, §6.5",
     mutation: "bodies.strip.material.bulk_modulus=8.5e6",
 };
