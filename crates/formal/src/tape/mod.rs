@@ -5,6 +5,7 @@
 //! registers of a batch stay in the first-level cache. What does not vary with the deformation is computed once, when
 //! the tape is made: the grouped constants of the law.
 
+mod degree;
 pub(crate) mod lower;
 mod machine;
 mod registers;
@@ -157,16 +158,6 @@ impl Tape {
 
     pub fn is_empty(&self) -> bool {
         self.instructions.is_empty()
-    }
-
-    /// Whether its instructions are sums, products, quotients, powers, logarithms, exponentials and principal stretches alone, none of which
-    /// is put together of pieces.
-    pub fn is_without_choice(&self) -> bool {
-        self.instructions.iter().all(|instruction| match instruction.code {
-            Code::Call(function) => matches!(function, Function::Ln | Function::Exp),
-            Code::Compare(_) | Code::Select | Code::SquareRoot => false,
-            _ => true,
-        })
     }
 
     /// Where the lanes of entry `entry` of `F` start, by columns.

@@ -1,23 +1,21 @@
-//! Texts that are laws of the table, however they are written: bodies run them as those.
+//! Texts that are laws of the table: bodies run them as those.
 //!
-//! Looked for are the laws of two moduli that have a value for every `F`; moduli are those of the text at rest. A text is the law where
-//! both have the same energy at [`POINTS`] deformations, which are more than the 715 numbers that a polynomial of degree four in the nine
-//! entries of `F` has: one that is written in no other operations is the same. Powers, logarithms and principal stretches are analytic on
-//! either side of `J = 0`, where half of the points lie, and what is another law is told by deformations of several sizes; choices could
-//! be the same there and other elsewhere, and are none of these laws.
+//! Looked for are the laws of two moduli that have a value for every `F`. `linear` and `st_venant_kirchhoff` are polynomials of degree four at most
+//! in the nine entries of `F`, of which there are 715: a text that is one too, as its instructions tell, is the law with its own moduli
+//! at rest where both have the same energy at [`POINTS`] deformations, however it is written. The others are that where the text of the library gives
+//! the same instructions with the same numbers.
 
-use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw};
+use souple_formal::law::LawParameter;
 use souple_math::{Mat3, Vec3};
 
-/// The laws, with the degree of their energies.
-const CANDIDATES: [(AnyLaw, i32); 4] = [
-    (AnyLaw::Linear, 2),
-    (AnyLaw::Corotational, 2),
-    (AnyLaw::StVenantKirchhoff, 4),
-    (AnyLaw::StableNeoHookean, 6),
-];
+use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw, WRITTEN_LAWS};
+
+/// Laws that are polynomials, with their degrees.
+const POLYNOMIALS: [(AnyLaw, u32); 2] = [(AnyLaw::Linear, 2), (AnyLaw::StVenantKirchhoff, 4)];
+/// Laws that are not.
+const OTHERS: [AnyLaw; 2] = [AnyLaw::Corotational, AnyLaw::StableNeoHookean];
 const POINTS: u32 = 768;
-/// Of entries of `F - I`, in turn.
+/// Of entries of `F - I`, in turn: terms of every degree are the greatest somewhere.
 const SIZES: [f64; 4] = [0.1, 0.5, 2.0, 20.0];
 /// Of the largest terms: an energy is a hundred operations, and moduli come of sums of a hundred of the second derivatives.
 const ROUNDING: f64 = 1e-13;
@@ -26,24 +24,51 @@ impl Material {
     /// The material with the law of the table that its text is, if it is one; else as it is.
     pub(crate) fn of_table(&self) -> Self {
         let MaterialLaw::Text(text) = &self.law else { return self.clone() };
-        let known = CANDIDATES.into_iter().find_map(|(law, degree)| {
-            let known = Self::known(law, self.small_strain, self.small_strain, self.density);
-            is_same(text, &known, degree).then_some(known)
-        });
-        known.unwrap_or_else(|| self.clone())
+        let law = text.polynomial_of_table(self).or_else(|| text.other_of_table());
+        law.map_or_else(|| self.clone(), |(law, moduli)| Self::known(law, moduli, moduli, self.density))
     }
 }
 
-/// Whether a text has the energy of a known material.
-fn is_same(text: &TextLaw, known: &Material, degree: i32) -> bool {
-    let Lame { mu, lambda } = known.small_strain;
-    let modulus = 2.0 * mu.abs() + lambda.abs();
-    text.energy().is_without_choice()
-        && (0..POINTS).all(|point| {
+impl TextLaw {
+    fn polynomial_of_table(&self, material: &Material) -> Option<(AnyLaw, Lame)> {
+        let (degree, moduli) = (self.energy().degree()?, material.small_strain);
+        let is_same = |(law, of_law): &(AnyLaw, u32)| {
+            let known = Material::known(*law, moduli, moduli, material.density);
+            // terms of a higher degree than the law's would be seen, and those beyond four could hide between the points
+            degree <= 4 && self.has_energy_of(&known, *of_law)
+        };
+        POLYNOMIALS.iter().find(|candidate| is_same(candidate)).map(|(law, _)| (*law, moduli))
+    }
+
+    fn has_energy_of(&self, known: &Material, degree: u32) -> bool {
+        let Lame { mu, lambda } = known.small_strain;
+        let modulus = 2.0 * mu.abs() + lambda.abs();
+        (0..POINTS).all(|point| {
             let F = deformation(point);
-            let largest = modulus * (1.0 + F.dot(&F)).sqrt().powi(degree);
-            (text.energy_at(&F) - known.energy_density(&F)).abs() <= ROUNDING * largest
+            let largest = modulus * (1.0 + F.dot(&F)).sqrt().powi(degree as i32);
+            (self.energy_at(&F) - known.energy_density(&F)).abs() <= ROUNDING * largest
         })
+    }
+
+    fn other_of_table(&self) -> Option<(AnyLaw, Lame)> {
+        let [(_, LawParameter::Number { value: a, .. }), (_, LawParameter::Number { value: b, .. })] =
+            self.text().parameters[..]
+        else {
+            return None;
+        };
+        let all = OTHERS.into_iter().flat_map(|law| [[a, b], [b, a]].map(|numbers| (law, numbers)));
+        all.filter_map(|(law, [lambda, mu])| {
+            let written = WRITTEN_LAWS.iter().find(|written| written.name == law.entry().name)?;
+            let mut text = written.text().ok()?;
+            for (name, parameter) in &mut text.parameters {
+                let LawParameter::Number { value, .. } = parameter else { return None };
+                *value = if name == "mu" { mu } else { lambda };
+            }
+            let known = Self::known(text).ok()?;
+            known.is_same_program(self).then_some((law, Lame { mu, lambda }))
+        })
+        .next()
+    }
 }
 
 /// One of many in general position: the multiples of nine irrational numbers, without their whole parts.
@@ -51,8 +76,8 @@ fn deformation(point: u32) -> Mat3 {
     let size = SIZES[point as usize % SIZES.len()];
     let entry = |prime: f64| size * (2.0 * (f64::from(point + 1) * prime.sqrt()).fract() - 1.0);
     let column = |primes: [f64; 3]| Vec3::new(entry(primes[0]), entry(primes[1]), entry(primes[2]));
-    let G = [[2.0, 3.0, 5.0], [7.0, 11.0, 13.0], [17.0, 19.0, 23.0]].map(column);
-    Mat3::IDENTITY + Mat3 { columns: G }
+    let columns = [[2.0, 3.0, 5.0], [7.0, 11.0, 13.0], [17.0, 19.0, 23.0]].map(column);
+    Mat3::IDENTITY + Mat3 { columns }
 }
 
 #[cfg(test)]
@@ -64,7 +89,7 @@ mod tests {
         let owned = |list: &[(&str, &str)]| -> Vec<(String, String)> {
             list.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
-        let parameters = owned(&[("mu", "10 kPa"), ("lambda", "20 kPa")]);
+        let parameters = owned(&[("lambda", "20 kPa"), ("mu", "10 kPa")]);
         let text = law_text(energy, &parameters, &owned(definitions)).unwrap();
         let text = TextLaw::known(text).unwrap();
         let small_strain = text.small_strain();
@@ -109,6 +134,14 @@ mod tests {
             // the same moduli at rest
             ("lambda/2*tr(E)^2 + mu*dot(E, E) + 1e-6*mu*tr(E)^3", &[], None),
             ("lambda/2*tr(E)^2 + mu*dot(E, E) + mu*max(tr(E) - 1e4, 0)^3", &[], None),
+            // what acts at small strain alone, near collapse, or very far out
+            ("lambda/2*tr(E)^2 + mu*dot(E, E) + 2e5*mu*dot(E, E)^2*exp(-2e4*dot(E, E))", &[], None),
+            ("lambda/2*tr(E)^2 + mu*dot(E, E) + 1e-60*mu*tr(E)^20", &[], None),
+            (
+                "m/2*(I1 - 3 - log((I1 + 1)/4)) + l/2*(J - 1)^2 - 3/4*m*(J - 1) + mu*exp(-J^2*1e6)",
+                &[("m", "4/3*mu"), ("l", "lambda + 5/6*mu")],
+                None,
+            ),
             ("mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", &[], None),
             ("mu*(log(l1)^2 + log(l2)^2 + log(l3)^2) + lambda/2*log(l1*l2*l3)^2", &[], None),
             ("mu/2*(I1 - 3) - mu*(J - 1) + (lambda + mu)/2*(J - 1)^2", &[], None),

@@ -5,7 +5,7 @@ use super::*;
 const TE: f64 = 1.0 / 300.0;
 
 fn network(text: &str) -> Network {
-    let number = |text: &str| text.parse::<f64>().map_err(|error| error.to_string());
+    let number = |text: &str, _: &str| text.parse::<f64>().map_err(|error| error.to_string());
     read(text, &number).unwrap()
 }
 
@@ -212,7 +212,7 @@ fn random_trees_have_their_transfer_function() {
 
 #[test]
 fn faults_are_told() {
-    let number = |text: &str| text.parse::<f64>().map_err(|error| error.to_string());
+    let number = |text: &str, _: &str| text.parse::<f64>().map_err(|error| error.to_string());
     let problem = |text: &str| read(text, &number).unwrap_err().to_string();
     assert!(problem("sprong(1)").contains("did you mean `spring`?"));
     assert!(problem("spring(1) -").contains("the end was read at byte 11"));
