@@ -62,15 +62,15 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
             );
             continue;
         };
-        if let [Step::Key("systems"), Step::Key(DEFAULT_SYSTEM), ..] = steps[..] {
-            write_default_system(document, place);
-        }
         let setting = Setting { path, place, log };
         if value.trim().is_empty() {
             setting.take_out(document, &steps);
-        } else {
-            setting.set(document, Some(&SCENE), &steps, node);
+            continue;
         }
+        if let [Step::Key("systems"), Step::Key(DEFAULT_SYSTEM), ..] = steps[..] {
+            write_default_system(document, place);
+        }
+        setting.set(document, Some(&SCENE), &steps, node);
     }
 }
 
@@ -316,9 +316,14 @@ mod tests {
         assert!(
             matches!(body.get("list").map(|node| &node.content), Some(Content::List(items)) if items.len() == 2)
         );
-        for missing in
-            ["bodies.a.adpat=", "bodies.b.adapt=", "bodies.a.list[3]=", "bodies.a.list.x=", "world.period.x="]
-        {
+        for missing in [
+            "systems.main=",
+            "bodies.a.adpat=",
+            "bodies.b.adapt=",
+            "bodies.a.list[3]=",
+            "bodies.a.list.x=",
+            "world.period.x=",
+        ] {
             assert_eq!(set(text, &[missing]).1, 1, "{missing}");
         }
     }

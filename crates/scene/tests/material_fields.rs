@@ -65,6 +65,7 @@ fn wrong_fields_are_refused() {
         ("density = { value = \"1000 - 2000 * x\" }", "`density` of cell 2 is"),
         ("poissons_ratio = { value = \"x\" }", "`poissons_ratio` of cell 2 is"),
         ("density = { value = \"2 kPa\" }", "`2 kPa` is a pressure"),
+        ("colour = { value = \"2 kPa\" }", "`colour` is no number of the material `linear`"),
         ("colour = { value = \"x\" }", "`colour` is no number of the material `linear`"),
         ("density = { value = \"1000\", file = \"three.txt\" }", "by a formula or by a file"),
     ] {

@@ -272,8 +272,8 @@ pub enum FieldValues {
 }
 
 impl MaterialField {
-    /// `unit` is that of the parameter.
-    fn read(parameter: String, unit: &'static str, reader: &Reader) -> Option<Self> {
+    /// `unit` is that of the parameter, where the material has it.
+    fn read(parameter: String, unit: Option<&'static str>, reader: &Reader) -> Option<Self> {
         if reader.has("value") == reader.has("file") {
             let message = format!("`{parameter}` is told by a formula or by a file");
             reader.log().add(Code::Conflict, &reader.site(), message, "`value` or `file`");
@@ -281,7 +281,10 @@ impl MaterialField {
         }
         let file =
             || Some(FieldValues::File { name: reader.maybe_text("file")?, site: reader.site_of("file") });
-        let values = reader.formula_in("value", unit).map(FieldValues::Formula).or_else(file)?;
+        let values = match unit {
+            Some(unit) => reader.formula_in("value", unit).map(FieldValues::Formula).or_else(file)?,
+            None => FieldValues::Formula(Formula::constant(0.0)),
+        };
         Some(Self { parameter, values, site: reader.site() })
     }
 }
@@ -389,9 +392,10 @@ impl Body {
             material: read_material(&part),
         };
         let material = read_material(reader);
+        // what is no number of the material is told where it is spread over cells
         let unit_of = |parameter: &str| {
-            let of_material = material.iter().flat_map(|chosen| chosen.entry.parameters);
-            of_material.clone().find(|known| known.name == parameter).map_or("", |known| known.unit)
+            let mut of_material = material.iter().flat_map(|chosen| chosen.entry.parameters);
+            of_material.find(|known| known.name == parameter).map(|known| known.unit)
         };
         let material_fields = reader.named("material_fields").into_iter().filter_map(|(name, part)| {
             let unit = unit_of(&name);
