@@ -56,7 +56,7 @@ const CUBE: Case = Case {
 const GROWTH: Refinement = Refinement {
     size_of: "e^(2 t / 1 s)",
     runs: &[
-        Variant { size: 2980.957_987_041_728, settings: &["run.duration=\"4 s\""] },
+        Variant { size: 2_980.957_987_041_728, settings: &["run.duration=\"4 s\""] },
         Variant { size: 54.598_150_033_144_236, settings: &["run.duration=\"2 s\""] },
     ],
     limit: Limit::Known(0.0),
