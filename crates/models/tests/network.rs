@@ -540,8 +540,8 @@ fn texts_of_laws_are_checked() {
             let entry = LINKS.find(law).unwrap();
             let texts: Vec<_> = texts.iter().map(|(name, pairs)| (*name, text(pairs))).collect();
             let mut values = Values::new();
-            words.iter().for_each(|(name, text)| values.set(name, Value::Text(text)));
-            texts.iter().for_each(|(name, pairs)| values.set(name, Value::Texts(pairs)));
+            words.iter().for_each(|(name, text)| values.set(*name, Value::Text(text)));
+            texts.iter().for_each(|(name, pairs)| values.set(*name, Value::Texts(pairs)));
             let values = entry.values(values).unwrap();
             (entry.build)(&Making { values: &values, timestep: TE })
                 .map(|_| ())
