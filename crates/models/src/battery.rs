@@ -2,7 +2,7 @@
 //! motion, sums, and the law at the samples as bodies take it (EXP-6 of the solids' specification).
 //!
 //! Expressions are tried as bodies take them, in tensors; on elements of first order under their usual rule also written out in
-//! numbers, as code is emitted; and hexahedra and quadrilaterals as boxes too. The cell is crooked, or a box of three
+//! numbers, as code is emitted, and cut along every axis, fragments added up; and hexahedra and quadrilaterals as boxes too. The cell is crooked, or a box of three
 //! different sides, and its displacements have no symmetry; both are the same in every run.
 
 use std::ops::Range;
@@ -119,9 +119,9 @@ impl Battery {
         let compiled = EnergyLaw::compile(&text).map_err(|error| untried(error.to_string()))?;
         let material = material(law).map_err(&untried)?;
         let mut battery = Self::default();
-        for (map, form) in forms(kind, rule) {
+        for (map, form, cut) in forms(kind, rule) {
             let element = element_data(kind, rule, map).map_err(|error| untried(error.to_string()))?;
-            let Some(cell) = Cell::new(kind, map, form, &element, &compiled) else { continue };
+            let Some(cell) = Cell::new(kind, (map, form, cut), &element, &compiled) else { continue };
             let samples = cell.forces_at_samples(rule, &material).map_err(&untried)?;
             battery = battery.worse(cell.battery(trying, compiled.strain == Strain::Finite, &samples));
         }
@@ -155,17 +155,18 @@ enum Form {
 }
 
 /// The forms that an element is tried in under a rule.
-fn forms(kind: ElementKind, rule: &QuadratureRule) -> Vec<(MapKind, Form)> {
-    let mut forms = vec![(MapKind::General, Form::Tensors)];
+fn forms(kind: ElementKind, rule: &QuadratureRule) -> Vec<(MapKind, Form, Cut)> {
+    let mut forms = vec![(MapKind::General, Form::Tensors, Cut::NONE)];
     // written out, elements of second order are as long as a book
     let is_usual = rule.name == kind.default_rule().name && kind.element().order == Order::Linear;
     if is_usual {
-        forms.push((MapKind::General, Form::Numbers));
+        forms.push((MapKind::General, Form::Numbers, Cut::NONE));
+        forms.push((MapKind::General, Form::Tensors, Cut::ALL));
     }
     if element_data(kind, rule, MapKind::Box).is_ok() {
-        forms.push((MapKind::Box, Form::Tensors));
+        forms.push((MapKind::Box, Form::Tensors, Cut::NONE));
         if is_usual {
-            forms.push((MapKind::Box, Form::Numbers));
+            forms.push((MapKind::Box, Form::Numbers, Cut::NONE));
         }
     }
     forms
@@ -188,10 +189,13 @@ struct Cell {
     kind: ElementKind,
     dimension: usize,
     rest: Vec<Vec3>,
-    energy: Running,
-    force: Running,
-    differential: Running,
+    energy: Fragments,
+    force: Fragments,
+    differential: Fragments,
 }
+
+/// Expressions that add up.
+struct Fragments(Vec<Running>);
 
 /// A displacement and a variation of every node, flat.
 type Lane = (Vec<f64>, Vec<f64>);
@@ -200,8 +204,7 @@ impl Cell {
     /// `None` where the law has no such form.
     fn new(
         kind: ElementKind,
-        map: MapKind,
-        form: Form,
+        (map, form, cut): (MapKind, Form, Cut),
         element: &ElementData,
         law: &EnergyLaw,
     ) -> Option<Self> {
@@ -223,20 +226,22 @@ impl Cell {
             .collect();
         let [energy, force, differential] = match form {
             Form::Tensors => {
-                let steps = element.steps(law, Cut::NONE);
+                let steps = element.steps(law, cut);
                 let given = Given { graph: &steps.graph, law, symbols: &steps.symbols };
                 let running =
                     |step: &Step| given.running(&rest, &step.constants, &step.definitions, &step.outputs);
-                [&steps.energies[0], &steps.forces[0], &steps.differentials[0]].map(running)
+                [&steps.energies, &steps.forces, &steps.differentials]
+                    .map(|addends| Fragments(addends.iter().map(running).collect()))
             }
             Form::Numbers => {
-                let derived = element.derive(law, Cut::NONE).ok()?;
+                let derived = element.derive(law, cut).ok()?;
                 let given = Given { graph: &derived.graph, law, symbols: &derived.symbols };
                 let running = |fragment: &ElementExpressions| {
                     let grouped = &fragment.grouped;
                     given.running(&rest, &grouped.constants, &[], &grouped.varying)
                 };
-                [&derived.energies[0], &derived.forces[0], &derived.differentials[0]].map(running)
+                [&derived.energies, &derived.forces, &derived.differentials]
+                    .map(|addends| Fragments(addends.iter().map(running).collect()))
             }
         };
         Some(Self { kind, dimension, rest, energy, force, differential })
@@ -407,6 +412,19 @@ impl Given<'_> {
         let varied = flat(&self.symbols.variations);
         let tape = Tape::of_expressions(graph, [&inputs, &varied], definitions, outputs, &law.parameters);
         Running { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: outputs.len() }
+    }
+}
+
+impl Fragments {
+    /// The sums of each lane.
+    fn run(&self, lanes: &[Lane]) -> Vec<Vec<f64>> {
+        let add = |mut sums: Vec<Vec<f64>>, addends: Vec<Vec<f64>>| {
+            for (sum, addend) in sums.iter_mut().flatten().zip(addends.into_iter().flatten()) {
+                *sum += addend;
+            }
+            sums
+        };
+        self.0.iter().map(|fragment| fragment.run(lanes)).reduce(add).unwrap_or_default()
     }
 }
 

@@ -196,7 +196,7 @@ fn formulas_are_grouped() {
     assert_eq!(document["constants"]["D_0"], "t0*sin(t0)");
 }
 
-/// `describe` prints energy, stress and tangent of every law, and the rules of every element.
+/// `describe` prints energy, stress and tangent of every law, and of every element its nodes, corners, edges, faces and rules.
 #[test]
 fn laws_and_elements_are_described() {
     for law in souple(["list", "laws", "--json"]).ends(0).json().as_array().expect("laws") {
@@ -208,6 +208,14 @@ fn laws_and_elements_are_described() {
     }
     let page = souple(["describe", "pyramid5"]).ends(0).stdout;
     assert!(page.contains("gauss_5 (degree 2)"), "{page}");
+    let page = souple(["describe", "tri6"]).ends(0).stdout;
+    for set in [
+        "dimension 2; nodes in the reference cell: 0 (0, 0), 1 (1, 0), 2 (0, 1), 3 (0.5, 0), 4 (0.5, 0.5), 5 (0, 0.5)",
+        "corners: 0 to 2; edges between corners: 0 1, 1 2, 2 0",
+        "sides, outward: edge3 of 0 1 3, edge3 of 1 2 4, edge3 of 2 0 5",
+    ] {
+        assert!(page.contains(set), "{page}");
+    }
 }
 
 /// Options that would change nothing, numbers out of range, and arguments that are no text are answered as wrong requests.

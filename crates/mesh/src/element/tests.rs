@@ -25,6 +25,33 @@ fn table_agrees_with_the_kinds() {
     assert_eq!(ElementKind::from_name("tet5").unwrap_err().nearest.as_deref(), Some("tet4"));
 }
 
+/// The dimension that an element states is that of what its corners span: coplanar ones are a surface. They are its first nodes, and no
+/// two elements are of one kind.
+#[test]
+fn dimension_is_the_rank_of_the_corners() {
+    let mut kinds: Vec<ElementKind> = ELEMENTS.entries.iter().map(|entry| entry.build.kind).collect();
+    for &kind in &kinds {
+        let element = kind.element();
+        let corners = kind.corners().element().nodes;
+        assert_eq!(&element.nodes[..kind.corner_count()], corners, "{kind}");
+        let at = |node: &[f64; 3]| Vec3::from_array(*node);
+        let mut spanned: Vec<Vec3> = Vec::new();
+        for corner in corners {
+            let difference = at(corner) - at(&corners[0]);
+            let rest = spanned.iter().fold(difference, |rest, axis| rest - *axis * axis.dot(rest));
+            // coordinates are multiples of a half and more
+            if rest.length() > 0.1 {
+                spanned.push(rest * (1.0 / rest.length()));
+            }
+        }
+        assert_eq!(spanned.len(), element.dimension, "{kind}");
+        assert_eq!(kind.dimension(), spanned.len(), "{kind}");
+    }
+    kinds.sort();
+    kinds.dedup();
+    assert_eq!(kinds.len(), ELEMENTS.entries.len());
+}
+
 /// What is told of an element follows from its data: boxes are quadrilaterals and hexahedra of first order, and a
 /// pressure on a flat or curved side is integrated exactly by the rule of its mass.
 #[test]

@@ -230,6 +230,9 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         if let Some(state) = state_of(page) {
             print_line(format_args!("  state of each link: {state}"));
         }
+        for line in sets_of(page) {
+            print_line(format_args!("  {line}"));
+        }
         if let Some(rules) = rules_of(page) {
             print_line(format_args!("  rules of quadrature: {rules}"));
         }
@@ -253,6 +256,33 @@ fn state_of(page: &Page) -> Option<String> {
         Some(numbers) => souple_table::counted(numbers as u64, "number"),
         None => "as many numbers as what is written needs".to_owned(),
     })
+}
+
+/// The nodes of an element, and which of them are its corners, edges and faces, by number.
+fn sets_of(page: &Page) -> Vec<String> {
+    let Some(kind) = ElementKind::from_name(&page.name).ok().filter(|_| page.kind == "element") else {
+        return Vec::new();
+    };
+    let dimension = kind.dimension();
+    let numbers = |nodes: &[u8]| nodes.iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
+    let place = |(number, node): (usize, &[f64; 3])| {
+        let coordinates: Vec<String> = node[..dimension].iter().map(f64::to_string).collect();
+        format!("{number} ({})", coordinates.join(", "))
+    };
+    let nodes: Vec<String> = kind.element().nodes.iter().enumerate().map(place).collect();
+    let edges: Vec<String> = kind.edges().iter().map(|edge| numbers(edge)).collect();
+    let faces: Vec<String> =
+        kind.faces().iter().map(|face| format!("{} of {}", face.kind, numbers(&face.nodes))).collect();
+    let last = kind.corner_count() - 1;
+    let mut lines = vec![
+        format!("dimension {dimension}; nodes in the reference cell: {}", nodes.join(", ")),
+        format!("corners: 0 to {last}; edges between corners: {}", edges.join(", ")),
+    ];
+    if !faces.is_empty() {
+        let what = if dimension == 2 { "sides" } else { "faces" };
+        lines.push(format!("{what}, outward: {}", faces.join(", ")));
+    }
+    lines
 }
 
 /// The rules of quadrature of an element, with the degree of the polynomials that each integrates exactly.

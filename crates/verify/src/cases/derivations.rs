@@ -34,7 +34,7 @@ const fn row_within(least: f64, most: f64, row: Case) -> Case {
 const fn tried(id: &'static str, what: &'static str, trial: Trial, most: f64) -> Case {
     Case {
         id,
-        capabilities: &["FAU-5", "FAU-7", "FAU-8", "FAU-9", "FAU-10", "FAU-27", "FAU-29"],
+        capabilities: &["FAU-5", "FAU-7", "FAU-8", "FAU-9", "FAU-10", "FAU-26", "FAU-27", "FAU-28", "FAU-29"],
         what,
         settings: &["check"],
         reading: Reading::Derived(Count::Off(trial)),
