@@ -1,4 +1,7 @@
-//! Deformed alike everywhere: the patch test on a mesh of all four elements, and its stresses and energies.
+//! Deformed alike everywhere: the patch test on meshes of all volume elements, linear and quadratic, and of the surface elements in
+//! plane strain, and its stresses and energies.
+//!
+//! Cells are regular here, which tries that elements meet; `models/tests` has crooked ones.
 
 use super::bar::{COROTATIONAL, LINEAR, NEO_HOOKEAN, ST_VENANT_KIRCHHOFF};
 use crate::{Case, Reading, Tolerance};
@@ -27,6 +30,52 @@ const STRESS: Case = Case {
     tolerance: Tolerance::Relative(1e-10),
     source: "von Mises stress of P Fᵀ / J with P at given F, 12 digits",
     ..ENERGY
+};
+
+const QUADRATIC: &str = r#"bodies.bar.mesh.element="mixed_quadratic""#;
+
+/// All sides of the plate led by one linear map.
+const LED: &str = r#"bodies.plate.pins=[{ region = { union = [{ group = "x_min" }, { group = "x_max" }, { group = "y_min" }, { group = "y_max" }] }, motion = { formula = "[t * (0.05 * x + 0.03 * y), t * (0.02 * x - 0.04 * y), 0]" } }]"#;
+const PLANE_STRAIN: &str = r#"bodies.plate.section.name="plane_strain""#;
+const PLANE_STVK: &str = r#"bodies.plate.material.name="st_venant_kirchhoff""#;
+
+/// A plate of an element, led.
+macro_rules! plate {
+    ($element:literal) => {
+        &[concat!("bodies.plate.mesh.element=\"", $element, "\""), PLANE_STRAIN, PLANE_STVK, LED]
+    };
+}
+
+/// `E = (FᵀF - I)/2` with no strain across, 0.48 m² 10 mm thick.
+const PLANE_ENERGY: f64 = {
+    const F: [[f64; 2]; 2] = [[1.05, 0.03], [0.02, 0.96]];
+    const MU: f64 = 1e6 / 2.6;
+    const LAMBDA: f64 = 1e6 * 0.3 / (1.3 * 0.4);
+    let xx = 0.5 * (F[0][0] * F[0][0] + F[1][0] * F[1][0] - 1.0);
+    let yy = 0.5 * (F[0][1] * F[0][1] + F[1][1] * F[1][1] - 1.0);
+    let xy = 0.5 * (F[0][0] * F[0][1] + F[1][0] * F[1][1]);
+    (MU * (xx * xx + yy * yy + 2.0 * xy * xy) + 0.5 * LAMBDA * (xx + yy) * (xx + yy)) * 0.48 * 0.01
+};
+
+const PLANE: Case = Case {
+    capabilities: &["FAU-1", "FAU-3"],
+    scene: "plate",
+    reference: PLANE_ENERGY,
+    // sums of some fifty samples of numbers near one, less than a hundred roundings each
+    tolerance: Tolerance::Relative(1e-12),
+    source: "thickness times area times the energy density at given F",
+    mutation: "bodies.plate.material.poissons_ratio=0.3001",
+    ..ENERGY
+};
+
+const PLANE_MIDDLE: Case = Case {
+    reading: Reading::component("middle", 0),
+    reference: 0.05 * 0.6 + 0.03 * 0.2,
+    tolerance: Tolerance::Absolute(1e-12),
+    source: "(F - I) X",
+    // of the sides all is given: only another map moves the inside
+    mutation: r#"bodies.plate.pins[0].motion.formula="[t * (0.05 * x + 0.03 * y * y), 0, 0]""#,
+    ..PLANE
 };
 
 pub(super) const CASES: &[Case] = &[
@@ -98,4 +147,60 @@ pub(super) const CASES: &[Case] = &[
         reference: 1165006.9563095479,
         ..STRESS
     },
+    Case {
+        id: "patch_quadratic_displacement",
+        capabilities: &["FAU-1", "FAU-3", "FAU-53"],
+        what: "a node inside a patch of tet10, hex20, prism15 and pyramid13 lands where the linear map puts it",
+        settings: &[QUADRATIC],
+        reading: Reading::component("inside", 0),
+        reference: 0.14,
+        tolerance: Tolerance::Absolute(1e-12),
+        source: "(F - I) X",
+        mutation: r#"bodies.bar.pins[0].motion.formula="[t * (0.1 * x + 0.05 * y * y - 0.02 * z), 0, 0]""#,
+        ..ENERGY
+    },
+    Case {
+        id: "patch_quadratic_energy",
+        capabilities: &["FAU-1", "FAU-3", "FAU-53"],
+        what: "energy of that patch, st_venant_kirchhoff",
+        settings: &[QUADRATIC],
+        reference: 318086.1923076925,
+        ..ENERGY
+    },
+    Case {
+        id: "patch_quadratic_neo_hookean_energy",
+        capabilities: &["FAU-1", "FAU-3", "FAU-53"],
+        what: "the same, neo_hookean",
+        settings: &[QUADRATIC, NEO_HOOKEAN],
+        reference: 264459.5712602865,
+        ..ENERGY
+    },
+    Case {
+        id: "patch_tri3",
+        what: "a node inside a plate of tri3 whose sides are led lands where the linear map puts it",
+        settings: plate!("tri3"),
+        ..PLANE_MIDDLE
+    },
+    Case { id: "patch_tri3_energy", what: "energy of that plate", settings: plate!("tri3"), ..PLANE },
+    Case {
+        id: "patch_quad4",
+        what: "a node inside a plate of quad4 whose sides are led lands where the linear map puts it",
+        settings: plate!("quad4"),
+        ..PLANE_MIDDLE
+    },
+    Case { id: "patch_quad4_energy", what: "energy of that plate", settings: plate!("quad4"), ..PLANE },
+    Case {
+        id: "patch_tri6",
+        what: "a node inside a plate of tri6 whose sides are led lands where the linear map puts it",
+        settings: plate!("tri6"),
+        ..PLANE_MIDDLE
+    },
+    Case { id: "patch_tri6_energy", what: "energy of that plate", settings: plate!("tri6"), ..PLANE },
+    Case {
+        id: "patch_quad8",
+        what: "a node inside a plate of quad8 whose sides are led lands where the linear map puts it",
+        settings: plate!("quad8"),
+        ..PLANE_MIDDLE
+    },
+    Case { id: "patch_quad8_energy", what: "energy of that plate", settings: plate!("quad8"), ..PLANE },
 ];
