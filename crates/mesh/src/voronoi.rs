@@ -86,8 +86,14 @@ impl Polytope {
     }
 
     /// Leaves what is on the near side of the plane half way from `near` to `far`, which is point `number`.
-    fn cut(&mut self, near: Vec3, far: Vec3, number: u32, on_plane: f64) {
+    fn cut(&mut self, (own, near): (u32, Vec3), far: Vec3, number: u32, on_plane: f64) {
         let across = far - near;
+        if across == Vec3::ZERO {
+            if number < own {
+                self.faces.clear();
+            }
+            return;
+        }
         let normal = across * (1.0 / across.length());
         let middle = (near + far) * 0.5;
         let height = |x: Vec3| {
@@ -222,9 +228,23 @@ fn element(mesh: &Mesh, kind: ElementKind, nodes: &[u32]) -> Option<(Polytope, f
     }
 }
 
+/// Whether all triangles lie in the plane of the first, but for rounding; of meshes without triangles it is so.
+fn lies_in_a_plane(mesh: &Mesh) -> bool {
+    let corners = |nodes: &[u32]| [0, 1, 2].map(|at: usize| mesh.points[nodes[at] as usize]);
+    let Some(first) = mesh.cells().find(|cell| cell.kind == ElementKind::Tri3) else { return true };
+    let [a, b, c] = corners(first.nodes);
+    let Some(normal) = (b - a).cross(c - a).try_normalised() else { return false };
+    let size = mesh.points.iter().map(|point| (*point - a).largest_component()).fold(0.0, f64::max);
+    let triangles = mesh.cells().filter(|cell| cell.kind == ElementKind::Tri3);
+    triangles.flat_map(|cell| corners(cell.nodes)).all(|x| (x - a).dot(normal).abs() <= ON_PLANE * size)
+}
+
 impl VoronoiCells {
-    /// Of a mesh of linear tetrahedra, or of linear triangles in one plane; `None` of others.
+    /// Of a mesh of linear tetrahedra, or of linear triangles in one plane; `None` of others. Of points at one place the first has the cell.
     pub fn of(mesh: &Mesh) -> Option<Self> {
+        if !lies_in_a_plane(mesh) {
+            return None;
+        }
         let mut cells = Self { volumes: vec![0.0; mesh.points.len()], ..Self::default() };
         let mut facets: BTreeMap<[u32; 2], f64> = BTreeMap::new();
         let near = Near::new(&mesh.points, crate::coarsen::mean_edge(mesh).max(f64::MIN_POSITIVE));
@@ -244,7 +264,7 @@ impl VoronoiCells {
                     if part.faces.is_empty() || *distance_sq > 4.0 * part.farthest_sq(place) {
                         break;
                     }
-                    part.cut(place, mesh.points[*other as usize], *other, ON_PLANE * size);
+                    part.cut((owner, place), mesh.points[*other as usize], *other, ON_PLANE * size);
                 }
                 let mut area = Vec3::ZERO;
                 for face in &part.faces {

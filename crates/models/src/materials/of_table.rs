@@ -5,6 +5,8 @@
 //! at rest where both have the same energy at [`POINTS`] deformations, however it is written. The others are that where the text of the library gives
 //! the same instructions with the same numbers.
 
+use std::sync::Arc;
+
 use souple_formal::law::LawParameter;
 use souple_math::{Mat3, Vec3};
 
@@ -12,9 +14,11 @@ use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw, WRITTEN_LAWS};
 
 /// Laws that are polynomials, with their degrees.
 const POLYNOMIALS: [(AnyLaw, u32); 2] = [(AnyLaw::Linear, 2), (AnyLaw::StVenantKirchhoff, 4)];
-/// Laws that are not.
-const OTHERS: [AnyLaw; 2] = [AnyLaw::Corotational, AnyLaw::StableNeoHookean];
+/// Laws that are not, with the powers that they grow by.
+const OTHERS: [(AnyLaw, u32); 2] = [(AnyLaw::Corotational, 2), (AnyLaw::StableNeoHookean, 6)];
 const POINTS: u32 = 768;
+/// Points that show what is worth compiling for comparison.
+const FEW: u32 = 16;
 /// Of entries of `F - I`, in turn: terms of every degree are the greatest somewhere.
 const SIZES: [f64; 4] = [0.1, 0.5, 2.0, 20.0];
 /// Of the largest terms: an energy is a hundred operations, and moduli come of sums of a hundred of the second derivatives.
@@ -24,26 +28,53 @@ impl Material {
     /// The material with the law of the table that its text is, if it is one; else as it is.
     pub(crate) fn of_table(&self) -> Self {
         let MaterialLaw::Text(text) = &self.law else { return self.clone() };
-        let law = text.polynomial_of_table(self).or_else(|| text.other_of_table());
+        self.with_law(text.law_of_table())
+    }
+
+    fn with_law(&self, law: Option<(AnyLaw, Lame)>) -> Self {
         law.map_or_else(|| self.clone(), |(law, moduli)| Self::known(law, moduli, moduli, self.density))
+    }
+
+    /// [`Self::of_table`] of each; a text that several have is looked at once.
+    pub(crate) fn all_of_table(materials: &[Self]) -> Vec<Self> {
+        let mut last: Option<(&Arc<TextLaw>, Option<(AnyLaw, Lame)>)> = None;
+        let mut of_table = |material: &'_ Self, text| {
+            let law = match last {
+                Some((known, law)) if Arc::ptr_eq(known, text) => law,
+                _ => text.law_of_table(),
+            };
+            last = Some((text, law));
+            material.with_law(law)
+        };
+        materials
+            .iter()
+            .map(|material| match &material.law {
+                MaterialLaw::Text(text) => of_table(material, text),
+                MaterialLaw::Known(_) => material.clone(),
+            })
+            .collect()
     }
 }
 
 impl TextLaw {
-    fn polynomial_of_table(&self, material: &Material) -> Option<(AnyLaw, Lame)> {
-        let (degree, moduli) = (self.energy().degree()?, material.small_strain);
-        let is_same = |(law, of_law): &(AnyLaw, u32)| {
-            let known = Material::known(*law, moduli, moduli, material.density);
-            // terms of a higher degree than the law's would be seen, and those beyond four could hide between the points
-            degree <= 4 && self.has_energy_of(&known, *of_law)
-        };
-        POLYNOMIALS.iter().find(|candidate| is_same(candidate)).map(|(law, _)| (*law, moduli))
+    fn law_of_table(&self) -> Option<(AnyLaw, Lame)> {
+        match self.energy().degree() {
+            Some(degree) if degree <= 4 => {
+                let moduli = self.small_strain();
+                let is_same =
+                    |(law, degree): &(AnyLaw, u32)| self.has_energy_of((*law, moduli), *degree, POINTS);
+                POLYNOMIALS.iter().find(|candidate| is_same(candidate)).map(|(law, _)| (*law, moduli))
+            }
+            // neither these laws nor the others
+            Some(_) => None,
+            None => self.other_of_table(),
+        }
     }
 
-    fn has_energy_of(&self, known: &Material, degree: u32) -> bool {
-        let Lame { mu, lambda } = known.small_strain;
-        let modulus = 2.0 * mu.abs() + lambda.abs();
-        (0..POINTS).all(|point| {
+    fn has_energy_of(&self, (law, moduli): (AnyLaw, Lame), degree: u32, points: u32) -> bool {
+        let known = Material::known(law, moduli, moduli, 1.0);
+        let modulus = 2.0 * moduli.mu.abs() + moduli.lambda.abs();
+        (0..points).all(|point| {
             let F = deformation(point);
             let largest = modulus * (1.0 + F.dot(&F)).sqrt().powi(degree as i32);
             (self.energy_at(&F) - known.energy_density(&F)).abs() <= ROUNDING * largest
@@ -57,15 +88,20 @@ impl TextLaw {
             return None;
         };
         let all = OTHERS.into_iter().flat_map(|law| [[a, b], [b, a]].map(|numbers| (law, numbers)));
-        all.filter_map(|(law, [lambda, mu])| {
+        all.filter_map(|((law, degree), [lambda, mu])| {
+            let moduli = Lame { mu, lambda };
+            // few are looked at more closely
+            if !self.has_energy_of((law, moduli), degree, FEW) {
+                return None;
+            }
             let written = WRITTEN_LAWS.iter().find(|written| written.name == law.entry().name)?;
             let mut text = written.text().ok()?;
             for (name, parameter) in &mut text.parameters {
                 let LawParameter::Number { value, .. } = parameter else { return None };
                 *value = if name == "mu" { mu } else { lambda };
             }
-            let known = Self::known(text).ok()?;
-            known.is_same_program(self).then_some((law, Lame { mu, lambda }))
+            let known = Self::compile(text).ok()?;
+            known.is_same_program(self).then_some((law, moduli))
         })
         .next()
     }

@@ -658,6 +658,10 @@ impl Force for Crowd {
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
         self.visit_standing(at, &mut Work::default(), |standing, memory| {
+            // a bond that tears touches no more; what is no number is shown
+            if standing.reach.length >= self.0.range {
+                return;
+            }
             let Some(act) = self.act(standing, memory, at) else { return };
             visit(&ContactPoint {
                 row: standing.pair[0],

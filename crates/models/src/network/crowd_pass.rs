@@ -167,13 +167,16 @@ impl Batch {
                 let other = *other as usize;
                 let d = x - at.positions[other];
                 let length_sq = d.length_sq();
-                let before = d - (v - at.velocities[other]) * timestep;
+                // most pairs of a list are out of range, and are asked no more
+                let before = || d - (v - at.velocities[other]) * timestep;
                 // written so that what is not finite acts, and is found
-                if length_sq >= range_sq && (leaving == Leaving::Forgotten || before.length_sq() >= range_sq)
+                if length_sq >= range_sq
+                    && (leaving == Leaving::Forgotten || before().length_sq() >= range_sq)
                 {
                     forces[slot - first_slot] = Vec3::ZERO;
                     continue;
                 }
+                let before = before();
                 self.pairs.push(((slot - first_slot) as u32, [row as u32, other as u32]));
                 self.ways.push([d, before]);
                 self.lengths[0].push(length_sq.sqrt());

@@ -23,8 +23,8 @@ const FINEST: f64 = 1.0 / 256.0;
 const LEAST_GAIN: f64 = 1e-2;
 /// Of a search: it may creep along a ridge no longer.
 const MOST_MOVES: usize = 256;
-/// Cells about a place that are looked into before all balls are.
-const FAR: i64 = 8;
+/// Diameters about a place within which the nearest ball is looked for.
+const FAR: i64 = 4;
 /// Of a diameter: balls of a close packing are that far apart, but for rounding.
 const NEARLY: f64 = 1.0 - 1e-9;
 
@@ -57,8 +57,13 @@ pub enum Gaps {
 pub struct Gap {
     /// On the surface.
     pub place: Vec3,
-    /// From there to the nearest ball's own surface [m].
+    /// From there to the nearest ball's own surface [m]; no more is told than [`Self::MOST`] diameters.
     pub width: f64,
+}
+
+impl Gap {
+    /// From a place to the middle of the nearest ball, in diameters, beyond which none is looked for.
+    pub const MOST: f64 = FAR as f64;
 }
 
 /// Why there is no filling.
@@ -333,21 +338,18 @@ impl Balls {
         least
     }
 
-    /// From the nearest ball, however far that is; infinite where there is none.
+    /// From the nearest ball; [`FAR`] diameters at most.
     fn clearance(&self, place: Vec3) -> f64 {
         let mut reach = 1;
         loop {
-            let mut least = f64::INFINITY;
+            let mut least = reach as f64 * self.cells.size;
+            let within = least;
             self.cells.visit(place, reach, |other| {
                 least = least.min((self.places[other as usize] - place).length());
             });
             // all balls that near are in the cells looked at
-            if least <= reach as f64 * self.cells.size {
+            if least < within || reach >= FAR {
                 return least;
-            }
-            if reach > FAR {
-                let all = self.places.iter().map(|other| (*other - place).length());
-                return all.fold(f64::INFINITY, f64::min);
             }
             reach *= 2;
         }

@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use souple_engine::LinkState;
-use souple_formal::{CONSTANTS, Dimension, FUNCTIONS, Formula, parse_quantity, quantity_in};
+use souple_formal::{CONSTANTS, FUNCTIONS, Formula, parse_quantity, quantity_in};
 use souple_math::Vec3;
 
 use super::kernel::{LinkKernel, Moving};
@@ -259,7 +259,7 @@ pub fn constants<'a>(
 /// Its unit is of another kind than `unit`, in words.
 pub fn number_in(text: &str, unit: &str) -> Option<Result<f64, String>> {
     let quantity = parse_quantity(text).ok()?;
-    if quantity.dimension == Dimension::PURE {
+    if text.trim().parse::<f64>().is_ok() {
         return Some(Ok(quantity.value));
     }
     Some(quantity_in(text, unit).map_err(|error| error.to_string()))

@@ -314,7 +314,7 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let materials: Vec<Material> = description.materials.iter().map(Material::of_table).collect();
+        let materials = Material::all_of_table(description.materials);
         let description =
             SolidDescription { name: description.name.clone(), materials: &materials, ..*description };
         Self::of_shapes(&description, &Shapes::of_linear(&description), Kernels::Fastest)

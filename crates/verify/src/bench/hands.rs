@@ -78,7 +78,8 @@ pub fn ten_minutes(effort: Effort) -> Result<Vec<Figure>, String> {
     Ok(vec![
         Figure {
             name: "real_time_drift".to_owned(),
-            value: world.drift.abs() / liver.period,
+            // what was given up is behind too
+            value: (world.drift + world.lost).abs() / liver.period,
             unit: "periods of the world that the clock is ahead at the end",
             error: world.lost,
             error_of: "s given up".to_owned(),

@@ -95,6 +95,7 @@ impl AdaptiveForce {
             section: Section::Solid,
             ..description.clone()
         };
+        let laws = laws.map(|law| law.of_table());
         let [first, second] = &laws;
         // chunks hold the same cells under either law
         let is_shared = |law: &&Material| law.law.is_linear();
@@ -103,6 +104,10 @@ impl AdaptiveForce {
         let solid = |law| SolidForce::of_shapes(&under(law), &shapes, Kernels::FastestAlike);
         let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
         let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
+        debug_assert!(
+            chunks().zip(solids[1].elements.chunks()).all(|(first, (_, second))| first.cells == second.cells),
+            "cells are sorted alike under either law"
+        );
         let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);
         let rest = chunks().map(|chunk| chunk.rows.iter().map(at_rest).collect()).collect();
         let mut first_cell = vec![0];

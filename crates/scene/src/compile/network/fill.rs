@@ -6,7 +6,7 @@ use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_models::contact::Shape;
 use souple_models::contact::shape::ClosedSurface;
-use souple_models::network::{Filling, Gaps};
+use souple_models::network::{Filling, Gap, Gaps};
 
 use super::super::{Draft, contact, shape};
 use crate::diagnostic::Code;
@@ -59,8 +59,10 @@ pub fn fill_all(draft: &mut Draft) {
         };
         if let Some(gap) = widest.filter(|gap| gap.width > 0.5 * spacing * (1.0 + ROUND)) {
             let Vec3 { x, y, z } = gap.place;
+            let is_far = gap.width >= (Gap::MOST - 0.5) * spacing * (1.0 - ROUND);
+            let at_least = if is_far { "at least " } else { "" };
             warnings.push(format!(
-                "{}: at ({x:.4}, {y:.4}, {z:.4}) the surface is {:.3} radii from the nearest ball of `{}`: none has room nearer to it, as in edges, \
+                "{}: at ({x:.4}, {y:.4}, {z:.4}) the surface is {at_least}{:.3} radii from the nearest ball of `{}`: none has room nearer to it, as in edges, \
                  where a surface is bent or below an `inset`; smaller balls come nearer",
                 draft.place(&fill.site),
                 gap.width / (0.5 * spacing),
