@@ -21,6 +21,7 @@ mod pattern;
 pub mod precondition;
 pub mod reduce;
 pub mod solvers;
+mod spare;
 
 pub use direct::DirectSolver;
 pub use error::SolveError;

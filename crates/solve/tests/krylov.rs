@@ -38,6 +38,31 @@ fn cg(
     conjugate_gradient(matrix, preconditioner, b, x, &settings, &mut ConjugateGradientWorkspace::default())
 }
 
+/// Several threads ask one preconditioner at once, each of which shares out the work of its own application: none waits for itself, and the bits
+/// are those of one after another.
+#[test]
+fn preconditioners_serve_several_at_once() {
+    use rayon::prelude::*;
+    let truss = truss([48, 6, 6], 300.0);
+    let count = truss.places.len();
+    let loads: Vec<Vec<Vec3>> = (0..8).map(|number| noise(count, number)).collect();
+    for (name, preconditioner) in every_preconditioner(&truss.matrix, &truss.places) {
+        let answer = |load: &Vec<Vec3>| {
+            let mut z = vec![Vec3::ZERO; count];
+            preconditioner.apply(load, &mut z);
+            z
+        };
+        let expected: Vec<Vec<Vec3>> = loads.iter().map(answer).collect();
+        // again and again: what waits for itself does so where work happens to be handed on
+        on_threads(4, || {
+            for _ in 0..200 {
+                let at_once: Vec<Vec<Vec3>> = loads.par_iter().map(answer).collect();
+                assert_eq!(at_once, expected, "{name}");
+            }
+        });
+    }
+}
+
 /// `‖x − x*‖ ≤ ‖r‖ / λ_min`, and `λ_min = 1`; the residual reported is the true one.
 #[test]
 fn conjugate_gradients_with_every_preconditioner() {

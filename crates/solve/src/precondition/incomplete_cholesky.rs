@@ -9,7 +9,7 @@
 //! know nothing of each other, so that two threads may share every sweep, and as many iterations are needed as before.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use souple_math::{Mat3, Vec3};
 
@@ -17,6 +17,7 @@ use super::{Preconditioner, invert_positive};
 use crate::error::check_length;
 use crate::kernel::{self, Kernel, RowLoop};
 use crate::matrix::check_pattern;
+use crate::spare::Spare;
 use crate::{BlockMatrix, Pattern, SolveError, ordering, reduce};
 
 /// Shifts tried after a breakdown, relative to the diagonal.
@@ -35,7 +36,7 @@ pub struct IncompleteCholesky {
     /// Block eliminated at each step; `None`: as numbered.
     order: Option<Vec<u32>>,
     /// Residual and solution in the order of elimination.
-    gathered: Mutex<Vec<Vec3>>,
+    gathered: Spare<Vec<Vec3>>,
     triangle: Triangle,
     /// `L D` while a row is worked on, then `L`.
     work: Vec<Mat3>,
@@ -151,7 +152,7 @@ impl IncompleteCholesky {
         let entries = triangle.columns.len();
         let mut factor = Self {
             pattern,
-            gathered: Mutex::new(vec![Vec3::ZERO; if order.is_some() { count } else { 0 }]),
+            gathered: Spare::new(vec![Vec3::ZERO; if order.is_some() { count } else { 0 }]),
             order,
             triangle,
             work: vec![Mat3::ZERO; entries],
@@ -380,14 +381,16 @@ impl Preconditioner for IncompleteCholesky {
             z.copy_from_slice(r);
             return self.solve(z);
         };
-        let mut gathered = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
-        for (gathered, &block) in gathered.iter_mut().zip(order) {
-            *gathered = r[block as usize];
-        }
-        self.solve(&mut gathered);
-        for (gathered, &block) in gathered.iter().zip(order) {
-            z[block as usize] = *gathered;
-        }
+        self.gathered.lend(|gathered| {
+            gathered.resize(order.len(), Vec3::ZERO);
+            for (gathered, &block) in gathered.iter_mut().zip(order) {
+                *gathered = r[block as usize];
+            }
+            self.solve(gathered);
+            for (gathered, &block) in gathered.iter().zip(order) {
+                z[block as usize] = *gathered;
+            }
+        });
     }
 
     fn bytes(&self) -> usize {

@@ -10,7 +10,7 @@
 //! with `A`. Directions that a matrix constrains ([`BlockMatrix::constrain`]) are read off the matrix and
 //! take no part in the motions; motions that a patch cannot tell apart (its points on a line) are dropped.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use souple_math::{Mat3, Vec3};
 
@@ -19,6 +19,7 @@ use super::{BlockJacobi, BlockRole, Geometry, IncompleteCholesky, Preconditioner
 use crate::kernel::{self, Kernel, RowLoop};
 use crate::matrix::check_pattern;
 use crate::partition::{ByCoupling, Geometric, aggregates};
+use crate::spare::Spare;
 use crate::{BlockMatrix, DirectSolver, Pattern, SolveError, reduce};
 
 /// What smooths between coarse corrections.
@@ -71,7 +72,7 @@ pub struct RigidModes {
     degenerate: Vec<(usize, [[f64; 6]; 6])>,
     coarse: BlockMatrix,
     coarse_solver: DirectSolver,
-    scratch: Mutex<Scratch>,
+    scratch: Spare<Scratch>,
 }
 
 /// How a block follows its patch.
@@ -185,7 +186,7 @@ impl RigidModes {
             degenerate: Vec::new(),
             coarse: BlockMatrix::zeros(coarse_pattern),
             coarse_solver,
-            scratch: Mutex::new(scratch),
+            scratch: Spare::new(scratch),
             patch_of,
             pattern,
         };
@@ -415,37 +416,42 @@ impl Preconditioner for RigidModes {
     }
 
     fn apply(&self, r: &[Vec3], z: &mut [Vec3]) {
-        let mut scratch = self.scratch.lock().unwrap_or_else(PoisonError::into_inner);
-        let Scratch { coarse, correction, fine } = &mut *scratch;
-        // y = E⁻¹ Zᵀ r
-        self.restrict(r, coarse);
-        self.solve_coarse(coarse);
-        // z = S (r − A Z y)
-        reduce::for_each_chunk(fine, &|first, fine: &mut [Vec3]| {
-            kernel::run(Subtract {
-                starts: &self.row_starts,
-                columns: &self.row_columns,
-                blocks: &self.row_blocks,
-                first,
-                minuend: Some(r),
-                x: coarse,
-                y: fine,
+        self.scratch.lend(|scratch| {
+            let Scratch { coarse, correction, fine } = scratch;
+            let count = 2 * self.patch_count;
+            coarse.resize(count, Vec3::ZERO);
+            correction.resize(count, Vec3::ZERO);
+            fine.resize(self.places.len(), Vec3::ZERO);
+            // y = E⁻¹ Zᵀ r
+            self.restrict(r, coarse);
+            self.solve_coarse(coarse);
+            // z = S (r − A Z y)
+            reduce::for_each_chunk(fine, &|first, fine: &mut [Vec3]| {
+                kernel::run(Subtract {
+                    starts: &self.row_starts,
+                    columns: &self.row_columns,
+                    blocks: &self.row_blocks,
+                    first,
+                    minuend: Some(r),
+                    x: coarse,
+                    y: fine,
+                });
             });
+            self.smoother.apply(fine, z);
+            // z += Z (y − E⁻¹ (A Z)ᵀ z)
+            kernel::run(Subtract {
+                starts: &self.column_starts,
+                columns: &self.column_rows,
+                blocks: &self.column_blocks,
+                first: 0,
+                minuend: None,
+                x: z,
+                y: correction,
+            });
+            self.solve_coarse(correction);
+            reduce::add_scaled(coarse, 1.0, correction);
+            self.prolong(coarse, z);
         });
-        self.smoother.apply(fine, z);
-        // z += Z (y − E⁻¹ (A Z)ᵀ z)
-        kernel::run(Subtract {
-            starts: &self.column_starts,
-            columns: &self.column_rows,
-            blocks: &self.column_blocks,
-            first: 0,
-            minuend: None,
-            x: z,
-            y: correction,
-        });
-        self.solve_coarse(correction);
-        reduce::add_scaled(coarse, 1.0, correction);
-        self.prolong(coarse, z);
     }
 
     fn bytes(&self) -> usize {
