@@ -219,8 +219,8 @@ mod tests {
     fn waits_are_awake_for_all_sleeps_but_few() {
         let mut awake = Awake(LEAST_AWAKE);
         let late = |tick: u32| match tick {
-            _ if tick % 10_000 == 0 => Duration::from_micros(350),
-            _ if tick % 1_000 == 0 => Duration::from_micros(150),
+            _ if tick.is_multiple_of(10_000) => Duration::from_micros(350),
+            _ if tick.is_multiple_of(1_000) => Duration::from_micros(150),
             _ => Duration::from_micros(20),
         };
         let mut exceeded = 0;

@@ -24,6 +24,9 @@ const SIZES: [f64; 4] = [0.1, 0.5, 2.0, 20.0];
 /// Of the largest terms: an energy is a hundred operations, and moduli come of sums of a hundred of the second derivatives.
 const ROUNDING: f64 = 1e-13;
 
+/// A law of the table with its moduli.
+type OfTable = (AnyLaw, Lame);
+
 impl Material {
     /// The material with the law of the table that its text is, if it is one; else as it is.
     pub(crate) fn of_table(&self) -> Self {
@@ -31,13 +34,13 @@ impl Material {
         self.with_law(text.law_of_table())
     }
 
-    fn with_law(&self, law: Option<(AnyLaw, Lame)>) -> Self {
+    fn with_law(&self, law: Option<OfTable>) -> Self {
         law.map_or_else(|| self.clone(), |(law, moduli)| Self::known(law, moduli, moduli, self.density))
     }
 
     /// [`Self::of_table`] of each; a text that several have is looked at once.
     pub(crate) fn all_of_table(materials: &[Self]) -> Vec<Self> {
-        let mut last: Option<(&Arc<TextLaw>, Option<(AnyLaw, Lame)>)> = None;
+        let mut last: Option<(&Arc<TextLaw>, Option<OfTable>)> = None;
         let mut of_table = |material: &'_ Self, text| {
             let law = match last {
                 Some((known, law)) if Arc::ptr_eq(known, text) => law,
@@ -57,7 +60,7 @@ impl Material {
 }
 
 impl TextLaw {
-    fn law_of_table(&self) -> Option<(AnyLaw, Lame)> {
+    fn law_of_table(&self) -> Option<OfTable> {
         match self.energy().degree() {
             Some(degree) if degree <= 4 => {
                 let moduli = self.small_strain();
@@ -71,7 +74,7 @@ impl TextLaw {
         }
     }
 
-    fn has_energy_of(&self, (law, moduli): (AnyLaw, Lame), degree: u32, points: u32) -> bool {
+    fn has_energy_of(&self, (law, moduli): OfTable, degree: u32, points: u32) -> bool {
         let known = Material::known(law, moduli, moduli, 1.0);
         let modulus = 2.0 * moduli.mu.abs() + moduli.lambda.abs();
         (0..points).all(|point| {
@@ -81,7 +84,7 @@ impl TextLaw {
         })
     }
 
-    fn other_of_table(&self) -> Option<(AnyLaw, Lame)> {
+    fn other_of_table(&self) -> Option<OfTable> {
         let [(_, LawParameter::Number { value: a, .. }), (_, LawParameter::Number { value: b, .. })] =
             self.text().parameters[..]
         else {
