@@ -26,6 +26,8 @@ struct Adapting {
     /// Name of the body, and the material of its second law.
     body: &'static str,
     second: &'static str,
+    /// Probes of what a body without a second law has not.
+    of_laws: &'static [&'static str],
     /// Name of the variant and its criterion.
     variants: &'static [(&'static str, &'static str)],
     /// The variant that must save time.
@@ -39,6 +41,7 @@ const BENT: Adapting = Adapting {
     probe: "tip",
     settings: &[],
     body: "bar",
+    of_laws: &["second_law", "at_the_free_end", "at_the_clamp", "excess"],
     second: "{ name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }",
     variants: &[
         ("all_first", "volume = 1e9"),
@@ -59,6 +62,7 @@ const PRESSED: Adapting = Adapting {
     probe: "press",
     settings: &[],
     body: "pad",
+    of_laws: &["second_law"],
     second: "{ name = \"ogden\", mu = [9615.4, -9615.4], alpha = [4, -4], bulk_modulus = 83333, density = 1000 }",
     variants: &[
         ("all_first", "edge_length = 1e9"),
@@ -78,6 +82,7 @@ const PULLED: Adapting = Adapting {
     probe: "pull",
     settings: &[],
     body: "pad",
+    of_laws: &["second_law"],
     second: "{ name = \"st_venant_kirchhoff\", youngs_modulus = 1e5, poissons_ratio = 0.3, density = 1000 }",
     variants: &[
         ("all_first", "edge_length = 1e9"),
@@ -87,7 +92,7 @@ const PULLED: Adapting = Adapting {
         ("length_10", "edge_length = 0.1"),
         ("length_6", "edge_length = 0.06"),
     ],
-    saving: Some("length_12"),
+    saving: Some("length_14"),
 };
 
 const PULLED_BY_EIGHT: Adapting = Adapting {
@@ -121,10 +126,11 @@ impl Adapting {
                 self.body, self.second
             )]
         };
-        let plain = vec![
+        let own = [
             format!("bodies.{}.adapt=", self.body),
             format!("bodies.{}.material={}", self.body, self.second),
         ];
+        let plain = self.of_laws.iter().map(|probe| format!("probes.{probe}=")).chain(own).collect();
         let adapting = self.variants.iter().map(|(variant, criterion)| (*variant, adapt(criterion)));
         for (variant, settings) in adapting.chain([(PLAIN, plain)]) {
             let settings: Vec<String> = settings
