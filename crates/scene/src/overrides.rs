@@ -126,12 +126,6 @@ impl Setting<'_> {
     /// Takes what `steps` lead to out of `table`.
     fn take_out(&self, table: &mut Table, steps: &[Step]) {
         let Some((last, way)) = steps.split_last() else { return };
-        let missing = || {
-            self.refuse(
-                format!("the scene has no `{}` to take out", self.path),
-                "a path that it has".to_owned(),
-            )
-        };
         let mut at = Content::Table(std::mem::take(table));
         let mut node = Some(&mut at);
         for step in way {
@@ -161,7 +155,8 @@ impl Setting<'_> {
             *table = whole;
         }
         if !is_out {
-            missing();
+            let message = format!("the scene has no `{}` to take out", self.path);
+            self.refuse(message, "a path that it has".to_owned());
         }
     }
 

@@ -7,7 +7,6 @@ use souple_table::{Parameter, Range, Value, Values, in_number, readable};
 use super::lattice::points_of;
 use super::{Cells, FillError, Grading, Part, Reach, Size, fill, lost};
 use crate::implicit::{Body, FormulaShape, Shape};
-
 use crate::{BoundingBox, Cell, ElementKind, Mesh, MeshError, available_memory};
 
 /// Parameters of every filling.

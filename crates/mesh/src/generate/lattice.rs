@@ -1,4 +1,4 @@
-//! Equilateral triangles in rows: the plane mesh on which differences are the same in all directions, and how far from it they go wrong.
+//! Equilateral triangles in rows, on which differences are the same in all directions; with disorder, how wrong they are elsewhere.
 
 use std::collections::BTreeMap;
 
