@@ -132,27 +132,34 @@ impl Adapting {
         ];
         let plain = self.of_laws.iter().map(|probe| format!("probes.{probe}=")).chain(own).collect();
         let adapting = self.variants.iter().map(|(variant, criterion)| (*variant, adapt(criterion)));
-        for (variant, settings) in adapting.chain([(PLAIN, plain)]) {
-            let settings: Vec<String> = settings
-                .into_iter()
-                .chain(self.settings.iter().map(|setting| (*setting).to_owned()))
-                .collect();
-            let timing = Timing {
-                scene: self.scene,
-                settings: &settings,
-                prepare: as_it_is,
-                warm_up: 0,
-                samples: 1,
-                steps_per_sample: self.periods as usize,
-            };
-            // each from the start: later, every element has the law that it keeps
-            let mut timed = with_threads(1, || timing.sample(1))??;
-            for _ in 1..effort.choose(1, 5) {
-                let again = with_threads(1, || timing.sample(1))??;
-                timed.seconds.extend(again.seconds);
-                timed.processor.extend(again.processor);
+        let variants: Vec<(&str, Vec<String>)> = adapting
+            .chain([(PLAIN, plain)])
+            .map(|(variant, settings)| {
+                let all = settings.into_iter().chain(self.settings.iter().map(|setting| (*setting).to_owned()));
+                (variant, all.collect())
+            })
+            .collect();
+        // in turn, so that what else the machine does meets all of them alike
+        for _ in 0..effort.choose(1, 5) {
+            for (number, (variant, settings)) in variants.iter().enumerate() {
+                let timing = Timing {
+                    scene: self.scene,
+                    settings,
+                    prepare: as_it_is,
+                    warm_up: 0,
+                    samples: 1,
+                    steps_per_sample: self.periods as usize,
+                };
+                // each from the start: later, every element has the law that it keeps
+                let timed = with_threads(1, || timing.sample(1))??;
+                match measured.get_mut(number) {
+                    Some((_, _, so_far)) => {
+                        so_far.seconds.extend(timed.seconds);
+                        so_far.processor.extend(timed.processor);
+                    }
+                    None => measured.push((variant, read(settings)?, timed)),
+                }
             }
-            measured.push((variant, read(&settings)?, timed));
         }
         let Some((_, reference, everywhere)) = measured.last() else { return Ok(Vec::new()) };
         let mut figures = Vec::new();
