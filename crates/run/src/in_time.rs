@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use souple_engine::{Edit, EditError, StageTimes};
 use souple_haptics::{DeviceNow, Histogram, Moving, Served, Service, ServiceError, Smoothing, Station};
 
-use crate::{Control, Progress, Session, Stepped, Trace};
+use crate::{Control, Governor, Progress, Session, Stepped, Trace};
 
 /// How the world kept its time.
 #[derive(Clone, Debug, Default)]
@@ -57,22 +57,6 @@ pub enum TimeError {
 
 /// A world that is behind by more periods gives up catching up.
 const CATCHING_UP: f64 = 3.0;
-/// Load above which bodies with levels may do less, and below which they may do more again (Debunne 2000, 5 §5.2).
-const FULL: f64 = 0.95;
-const EASY: f64 = 0.75;
-/// How much less and more that is, at once.
-const LESS: f64 = 0.9;
-const MORE: f64 = 1.02;
-
-/// A budget that the clock rules.
-struct Budget {
-    system: usize,
-    force: String,
-    /// As the scene says.
-    most: f64,
-    now: f64,
-}
-
 /// When periods are due, by a clock that counts seconds from the beginning of a run.
 #[derive(Clone, Copy, Debug, Default)]
 struct Dates {
@@ -105,15 +89,6 @@ impl Dates {
     }
 }
 
-/// The budget after a period with a load, where it may be `most`.
-fn ruled(budget: f64, most: f64, load: f64) -> f64 {
-    match load {
-        load if load > FULL => budget * LESS,
-        load if load < EASY => (budget * MORE).min(most),
-        _ => budget,
-    }
-}
-
 /// Steps a world for `duration` seconds of the clock.
 ///
 /// # Errors
@@ -130,7 +105,7 @@ pub fn run_in_time(
         WorldToll { loads: Vec::with_capacity(steps.min(1 << 24) as usize), ..WorldToll::default() };
     let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-    let mut budgets = budgets(session);
+    let mut governor = Governor::new(session);
     let mut held = vec![true; session.hands.len()];
     let (began, stages) = (Instant::now(), session.world.stages());
     let (mut dates, mut begun) = (Dates { period, ..Dates::default() }, began);
@@ -157,7 +132,7 @@ pub fn run_in_time(
         toll.periods = step;
         let load = clock.elapsed().as_secs_f64() / period;
         toll.loads.push(load);
-        toll.budgets += govern(session, &mut budgets, load);
+        toll.budgets += governor.after(session, load);
         let left = dates.ready(step, began.elapsed().as_secs_f64());
         if left > 0.0 {
             std::thread::sleep(Duration::from_secs_f64(left));
@@ -212,43 +187,10 @@ fn lead(session: &mut Session, service: &Service, held: &mut [bool]) -> Result<(
     Ok(())
 }
 
-fn budgets(session: &Session) -> Vec<Budget> {
-    let mut all = Vec::new();
-    for (system, of) in session.world.model().systems.iter().enumerate() {
-        for force in &of.forces {
-            let budget = force.editable().into_iter().find(|editable| editable.name == "budget");
-            all.extend(budget.map(|budget| Budget {
-                system,
-                force: force.name().to_owned(),
-                most: budget.value,
-                now: budget.value,
-            }));
-        }
-    }
-    all
-}
-
-/// Lets bodies with levels do less while the world is late, and more again when it is not; how many budgets that sets.
-fn govern(session: &mut Session, budgets: &mut [Budget], load: f64) -> u64 {
-    let mut set = 0;
-    for budget in budgets {
-        let value = ruled(budget.now, budget.most, load);
-        if value == budget.now {
-            continue;
-        }
-        let (system, force) = (budget.system, budget.force.clone());
-        let edit = Edit::SetParameter { system, force, parameter: "budget".to_owned(), value };
-        if session.world.edit(edit).is_ok() {
-            budget.now = value;
-            set += 1;
-        }
-    }
-    set
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::governor::{FULL, ruled};
 
     /// The rule of V-36, not a machine, through ten minutes of a given clock: a body wants a fifth more than can be done in a period, the time
     /// is in proportion to the budget, and once a minute the machine is held up for two fifths of a period. The budget comes down to a load of

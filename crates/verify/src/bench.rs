@@ -204,6 +204,11 @@ pub const BENCHES: &[Bench] = &[
         run: levels::adaptive_saving,
     },
     Bench {
+        name: "octree_rod",
+        what: "a rod of particles that divide where it bends and are grouped when it calms (V-07) [x as fast as the finest level, and as the coarse one]",
+        run: levels::octree_rod,
+    },
+    Bench {
         name: "tool_detection_10k",
         what: "one search for what a tool touches, among ten thousand triangles that move [ms]",
         run: tools::detection,

@@ -135,7 +135,8 @@ impl Adapting {
         let variants: Vec<(&str, Vec<String>)> = adapting
             .chain([(PLAIN, plain)])
             .map(|(variant, settings)| {
-                let all = settings.into_iter().chain(self.settings.iter().map(|setting| (*setting).to_owned()));
+                let all =
+                    settings.into_iter().chain(self.settings.iter().map(|setting| (*setting).to_owned()));
                 (variant, all.collect())
             })
             .collect();

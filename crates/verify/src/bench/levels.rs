@@ -3,8 +3,9 @@
 use souple_engine::World;
 use souple_scene::Measurement;
 
-use super::timing::scene;
-use super::{Effort, Figure};
+use super::timing::{self, Timed, Timing, as_it_is, scene, with_threads};
+use super::{Effort, Figure, value_of};
+use crate::cases::STRUCK_ROD;
 
 /// A body with levels that a tool presses and holds.
 struct Poke {
@@ -124,4 +125,50 @@ pub fn adaptive_saving(effort: Effort) -> Result<Vec<Figure>, String> {
         all.extend(poke.figures(effort)?);
     }
     Ok(all)
+}
+
+/// V-07: what the rod of particles that is struck and calms takes, over the finest level alone and over the coarse one.
+pub fn octree_rod(effort: Effort) -> Result<Vec<Figure>, String> {
+    let periods = effort.choose(200, 1000);
+    let variants = ["fixed=\"1\"", "fixed=\"0\"", ""];
+    let settings = variants.map(|level| {
+        let level = Some(level).filter(|level| !level.is_empty());
+        let level = level.map(|level| format!("bodies.rod.octree.{level}"));
+        STRUCK_ROD.iter().map(|text| (*text).to_owned()).chain(level).collect::<Vec<String>>()
+    });
+    let mut timed: Vec<Timed> = Vec::new();
+    // in turn, so that what else the machine does meets all of them alike
+    for _ in 0..effort.choose(1, 3) {
+        for (number, settings) in settings.iter().enumerate() {
+            let timing = Timing {
+                scene: "octree_rod",
+                settings,
+                prepare: as_it_is,
+                warm_up: 0,
+                samples: 1,
+                steps_per_sample: periods,
+            };
+            let again = with_threads(1, || timing.sample(1))??;
+            match timed.get_mut(number) {
+                Some(so_far) => {
+                    so_far.seconds.extend(again.seconds);
+                    so_far.processor.extend(again.processor);
+                }
+                None => timed.push(again),
+            }
+        }
+    }
+    let tip = |settings: &[String]| value_of(scene("octree_rod", settings)?, periods as u64, "tip", 2);
+    let error = tip(&settings[2])? / tip(&settings[0])? - 1.0;
+    let [finest, coarse, adaptive] = timed.as_slice() else { return Ok(Vec::new()) };
+    let held = |baseline| timing::Held {
+        error: error.abs(),
+        error_of: "sag, against the finest level".to_owned(),
+        baseline: Some(baseline),
+    };
+    Ok(vec![
+        adaptive.times_as_fast("octree_rod_finest", finest, &held(6.0)),
+        // as fast as the coarse level but for two fifths
+        adaptive.times_as_fast("octree_rod_coarse", coarse, &held(1.0 / 1.4)),
+    ])
 }

@@ -105,7 +105,8 @@ const NAIVE: &str = close!(r#"coupling = "one_way", loops = "lagged""#);
 const REMEDIED_ONE_WAY: &str = close!(r#"coupling = "one_way", loops = "activated""#);
 const TRANSPOSED: &str = close!(r#"coupling = "transpose""#);
 /// Edges in the ratio of 3 to 5, the coarse mesh at the clamp.
-const NAIVE_3: &str = close!(r#"coupling = "one_way", loops = "lagged""#, "[3, 3, 3]", "if(x + z < 0.1, 0, 1)");
+const NAIVE_3: &str =
+    close!(r#"coupling = "one_way", loops = "lagged""#, "[3, 3, 3]", "if(x + z < 0.1, 0, 1)");
 const REMEDIED_3: &str =
     close!(r#"coupling = "one_way", loops = "activated""#, "[3, 3, 3]", "if(x + z < 0.1, 0, 1)");
 /// Of a fifth of what the scene has: between the rates at which amplitudes grow without and with the remedy.

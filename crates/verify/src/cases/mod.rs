@@ -46,6 +46,7 @@ mod views;
 mod wall_cube;
 
 use crate::Case;
+pub use octree::STRUCK as STRUCK_ROD;
 
 /// Every case, subject by subject, in order of cost within a subject.
 pub const TABLES: &[&[Case]] = &[

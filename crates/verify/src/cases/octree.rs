@@ -29,6 +29,26 @@ const ROD: Case = Case {
     ..SWING
 };
 
+/// Held as deep as the coarse level has particles, so that every level is held in the same place, and struck: it begins to turn.
+/// Particles divide as it bends most, and are grouped once it has calmed.
+pub const STRUCK: &[&str] = &[
+    "bodies.rod.pins[0].region={ box = [[-1, -1, -1], [0.0031, 1, 1]] }",
+    "bodies.rod.angular_velocity=[0, 30, 0]",
+    "bodies.rod.octree.refine=0.06",
+    "bodies.rod.octree.coarsen=0.05",
+    "run.duration=\"2 s\"",
+];
+
+const ROD_STRUCK: Case = Case {
+    capabilities: &["DEB-14"],
+    settings: STRUCK,
+    reading: Reading::last("active"),
+    reference: 32.0,
+    tolerance: Tolerance::Absolute(0.0),
+    source: "specification, V-07: settles at level 3, 2 x 2 x 8 particles, everywhere",
+    ..ROD
+};
+
 /// The rod before it has come to rest.
 const ROD_ON_ITS_WAY: Case = Case {
     reading: Reading::component("tip", 2).after(20),
@@ -291,6 +311,30 @@ pub(super) const CASES: &[Case] = &[
         source: "specification, V-07: within 10 %",
         mutation: r#"bodies.rod.octree.fixed="0""#,
         ..ROD
+    },
+    Case {
+        id: "octree_rod_struck_sags",
+        what: "sag of the rod that was struck, at rest again, against that of the finest particles alone held as deep",
+        reading: Reading::component("tip", 2),
+        reference: -1.374_793e-3,
+        tolerance: Tolerance::Relative(0.1),
+        source: "specification, V-07: within 10 % of the finest, whose sag is that of `octree.fixed = \"1\"` after 2 s",
+        mutation: "world.gravity=[0, 0, -1.05]",
+        ..ROD_STRUCK
+    },
+    Case {
+        id: "octree_rod_struck_divides",
+        what: "particles at work while it bends most: more than the coarse 32",
+        reading: Reading::last("active").taking(Statistic::Max),
+        tolerance: Tolerance::Above,
+        mutation: "bodies.rod.octree.refine=1",
+        ..ROD_STRUCK
+    },
+    Case {
+        id: "octree_rod_struck_settles",
+        what: "particles at work when it has calmed",
+        mutation: "bodies.rod.octree.coarsen=0.001",
+        ..ROD_STRUCK
     },
     Case {
         id: "octree_rod_own_rates",

@@ -70,6 +70,8 @@ pub struct Live {
     stage: Stage,
     mode: Mode,
     pace: Pace,
+    /// What this thread has worked since the last period was ready, of which budgets take account.
+    worked: Duration,
     /// Whether pages have not seen the world as it stands.
     is_changed: bool,
     /// Whether pages have not been told how it stands.
@@ -110,6 +112,7 @@ impl Live {
             stage,
             mode: Mode::Waiting,
             pace: Pace::new(now),
+            worked: Duration::ZERO,
             is_changed: true,
             is_status_new: false,
             greeting: None,
@@ -179,12 +182,18 @@ impl Live {
 
     fn step(&mut self) {
         self.is_changed = true;
+        let began = Instant::now();
         match self.stage.step(&self.hub) {
             Ok(Stepped::BrokenOff) => return,
             Ok(_) => {}
             Err(message) => self.set_mode(Mode::Failed(message)),
         }
-        self.pace.stepped(Instant::now(), self.stage.time());
+        let now = Instant::now();
+        let worked = std::mem::take(&mut self.worked) + (now - began);
+        if self.mode == Mode::Playing {
+            self.stage.govern(self.pace.load(worked, self.stage.period()));
+        }
+        self.pace.stepped(now, self.stage.time());
     }
 
     fn show(&mut self, now: Instant) {
@@ -195,6 +204,7 @@ impl Live {
         if self.hub.page_count() > 0 {
             let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
             self.hub.show(&self.stage.frame(factor).into());
+            self.worked += now.elapsed();
         }
     }
 

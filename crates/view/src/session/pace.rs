@@ -49,6 +49,11 @@ impl Pace {
         moment + Duration::from_secs_f64(((time - start) / self.speed).clamp(0.0, 1e6))
     }
 
+    /// Work over the time that there is for a period of the world [s] at the wished speed.
+    pub fn load(&self, worked: Duration, period: f64) -> f64 {
+        worked.as_secs_f64() * self.speed / period
+    }
+
     /// A step has reached a simulated time [s].
     pub fn stepped(&mut self, now: Instant, time: f64) {
         self.latest = time;
@@ -84,6 +89,8 @@ mod tests {
         pace.set_speed(0.5, start, 0.0);
         let after = |seconds: f64| start + Duration::from_secs_f64(seconds);
         assert_eq!(pace.due(0.01), after(0.02));
+        // half of the 20 ms that there are for a period of 10 ms
+        assert!((pace.load(Duration::from_millis(10), 0.01) - 0.5).abs() < 1e-12);
         // in time
         pace.stepped(after(0.02), 0.01);
         assert_eq!(pace.due(0.02), after(0.04));

@@ -8,7 +8,7 @@ use souple_engine::hand::is_hand_name;
 use souple_engine::obstacle::{Form, Obstacle};
 use souple_engine::{Edit, Interruption, Model, StageTimes, Tool};
 use souple_run::show::obstacles_of;
-use souple_run::{Options, Session, Stepped};
+use souple_run::{Governor, Options, Session, Stepped};
 use souple_scene::spec::picture::PictureView;
 use souple_scene::{BodyInfo, Scene};
 use souple_table::Table;
@@ -25,6 +25,7 @@ use crate::tools::TOOLS;
 /// A scene that is shown.
 pub struct Stage {
     session: Session,
+    governor: Governor,
     /// Counts the scenes of this program.
     number: u32,
     description: String,
@@ -136,6 +137,7 @@ impl Stage {
             iterations_per_step: [0.0; 2],
             sample_every: (SAMPLE_DISTANCE / period).ceil().max(1.0) as u64,
             row: Vec::with_capacity(columns),
+            governor: Governor::new(&session),
             session,
         };
         hub.samples().begin(number, columns);
@@ -251,9 +253,14 @@ impl Stage {
         self.session.world.time()
     }
 
+    /// Of the world [s].
+    pub fn period(&self) -> f64 {
+        self.session.world.model().period
+    }
+
     /// The time after the next step [s].
     pub fn next_time(&self) -> f64 {
-        (self.session.world.state().period + 1) as f64 * self.session.world.model().period
+        (self.session.world.state().period + 1) as f64 * self.period()
     }
 
     pub fn looks(&self) -> &Looks {
@@ -299,6 +306,12 @@ impl Stage {
             self.sample(hub);
         }
         Ok(Stepped::On)
+    }
+
+    /// Lets bodies with levels do less while the world is late, and more again when it is not: the last period took `load` of the
+    /// time that there is for one.
+    pub fn govern(&mut self, load: f64) {
+        self.governor.after(&mut self.session, load);
     }
 
     /// Brings hands nearer to where they are led, once in a period: also where its step was broken off.
@@ -490,6 +503,7 @@ impl Stage {
         let influence = self.influence_shown();
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
         self.show_influence_of(&influence);
+        self.governor = Governor::new(&self.session);
         for warning in &self.session.warnings[told..] {
             hub.tell_all(&document("warning", json!({"message": self.origin.told(warning)})));
         }

@@ -361,6 +361,57 @@ fn meshes_are_taken() {
     assert_alive(&world);
 }
 
+/// A bar of two meshes that is fine wherever it bends.
+const FINE_BAR: &str = r#"
+    format = 1
+    title = "A bar of two meshes"
+    [world]
+    period = "1 ms"
+    gravity = [0, -9.81, 0]
+    [systems.main]
+    stepper = { name = "staggered", halvings = 3 }
+    [bodies.bar]
+    mesh = { generate = "bar", size = [0.4, 0.1, 0.1], cells = [8, 2, 2], element = "tet4" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "50 kPa", poissons_ratio = 0.3, density = 1000 }
+    damping = { rayleigh_mass = 20 }
+    [bodies.bar.levels]
+    coarser = [{ mesh = { generate = "bar", size = [0.4, 0.1, 0.1], cells = [4, 1, 1], element = "tet4" } }]
+    refine = 1e-6
+    coarsen = 1e-7
+    budget = 20000
+    [[bodies.bar.pins]]
+    region = "x_min"
+    [probes.fine]
+    body = "bar"
+    quantity = "levels.active"
+    level = 1
+"#;
+
+/// A world that cannot keep up does less where its bodies have a budget: nobody steps it in ten
+/// microseconds, so that the bar is coarse in the end, and fine again soon after time goes as it should. What the clock decided is in the recording.
+#[test]
+fn a_late_world_does_less() {
+    let world = World::of(FINE_BAR);
+    let mut page = Page::open(&world);
+    let fine = |world: &World| world.get("/report").json()["probes"]["fine"]["last"][0].as_f64().unwrap();
+    let wait_for = |what: &str, is_so: &dyn Fn(f64) -> bool| {
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !is_so(fine(&world)) {
+            assert!(Instant::now() < deadline, "{what}: {} fine points", fine(&world));
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    };
+    wait_for("it bends", &|fine| fine > 0.0);
+    page.wish(json!({"do": "speed", "factor": 100}));
+    wait_for("it is late", &|fine| fine == 0.0);
+    page.wish(json!({"do": "speed", "factor": 0.1}));
+    wait_for("it is in time", &|fine| fine > 0.0);
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+    let recording = world.assert_replayed();
+    assert!(recording.commands.len() > 100, "{}", recording.commands.len());
+}
+
 /// A page that looks on for long costs no more memory than one that has just come.
 #[test]
 fn memory_stays_flat() {

@@ -332,6 +332,7 @@ class Page {
         this.transport.show(frame);
         this.stages.show(frame);
         this.plots.follow(frame);
+        this.plots.feel(frame.time, frame.hands.filter(({ page }) => page === this.scenes.page));
         this.legend.show(this.picture.meanings);
         document.body.dataset.frame = String(frame.number);
         document.body.dataset.pictures = String(++this.pictures);

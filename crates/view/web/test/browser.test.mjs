@@ -60,8 +60,11 @@ describe("the liver", () => {
     }, tip);
     await photograph(page, "liver-pulled");
     assert.match(await page.locator(".force").textContent(), /\d [mµ]?N$/);
+    const [pull] = await trial.plotted(page, "your hand");
+    assert.ok(pull > 0, `the plot of the hand ends at ${pull} N`);
     await page.mouse.up();
     await page.locator(".force").waitFor({ state: "detached" });
+    await page.waitForFunction(() => document.querySelector('[data-title="your hand"]').dataset.last === "[0]");
     assert.deepEqual(page.errors, []);
   });
 

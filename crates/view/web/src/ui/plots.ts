@@ -2,7 +2,7 @@
 
 import uPlot from "uplot";
 import { inPrint, label, number } from "../format";
-import type { Frame, ProbeInfo, Samples } from "../protocol";
+import type { Frame, HandShown, ProbeInfo, Samples } from "../protocol";
 import { element, panel } from "./dom";
 import { STAGES } from "./stages";
 
@@ -42,6 +42,8 @@ export class Plots {
   private samples = new Table(0);
   /** Of frames: time, stages, iterations. */
   private steps = new Table(0);
+  /** Of frames, from when this page first held something: time, force. */
+  private felt: Table | null = null;
   private plots: Plot[] = [];
   private isDrawn = true;
   /** How much of the past is seen [s]; all of it by default. */
@@ -68,6 +70,7 @@ export class Plots {
     this.plots = [];
     this.samples = new Table(1 + ENERGIES.length + probes.reduce((sum, probe) => sum + probe.components, 0));
     this.steps = new Table(1 + STAGES.length + ITERATIONS.length);
+    this.felt = null;
     const lines = (names: string[]) => names.map((name, index) => ({ name, colour: COLOURS[index]! }));
     let first = 1 + ENERGIES.length;
     for (const { name, unit, components } of probes) {
@@ -93,12 +96,26 @@ export class Plots {
     this.isDrawn = false;
   }
 
+  /** How hard the hands of this page pull or press together, of which there is a plot once there are any [N]. */
+  feel(time: number, hands: HandShown[]): void {
+    if (!this.felt) {
+      if (hands.length === 0) return;
+      this.felt = new Table(2);
+      const force = { name: "force", colour: COLOURS[0]! };
+      // what a person does now comes first
+      this.place.prepend(this.add(this.felt, 1, "your hand", "N", [force]));
+    }
+    if (time === this.felt.columns[0]?.at(-1)) return;
+    this.felt.push([time, hands.reduce((sum, { force }) => sum + Math.hypot(...force), 0)]);
+    this.isDrawn = false;
+  }
+
   /** Axes take the colours of the page. */
   restyle(): void {
     this.plots.forEach(({ plot }) => plot.redraw());
   }
 
-  private add(table: Table, first: number, title: string, unit: string, lines: Line[]): void {
+  private add(table: Table, first: number, title: string, unit: string, lines: Line[]): HTMLElement {
     const axis = { stroke: () => style("--quiet"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false } };
     // what is under the mouse, or else what came last
     const said = (unit: string) => (plot: uPlot, value: number | null, line: number) => {
@@ -126,6 +143,7 @@ export class Plots {
     );
     plot.root.dataset.title = title;
     this.plots.push({ plot, table, first, count: lines.length });
+    return plot.root;
   }
 
   private draw(): void {
