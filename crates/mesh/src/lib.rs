@@ -7,6 +7,7 @@
 mod boundary;
 pub mod coarsen;
 mod conformity;
+mod decimate;
 mod element;
 mod error;
 pub mod fill;

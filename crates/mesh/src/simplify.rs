@@ -91,31 +91,31 @@ pub fn simplify(surface: &TriangleSurface, goal: Goal) -> Result<Simplified, Mes
 
 /// `xᵀ A x - 2 b · x + c`: squared distances to planes, weighted.
 #[derive(Clone, Copy)]
-struct Quadric {
+pub(crate) struct Quadric {
     a: Mat3,
     b: Vec3,
     c: f64,
 }
 
 impl Quadric {
-    const ZERO: Self = Self { a: Mat3 { columns: [Vec3::ZERO; 3] }, b: Vec3::ZERO, c: 0.0 };
+    pub(crate) const ZERO: Self = Self { a: Mat3 { columns: [Vec3::ZERO; 3] }, b: Vec3::ZERO, c: 0.0 };
 
     /// The plane through `point`, whose normal has length one.
-    fn plane(point: Vec3, normal: Vec3, weight: f64) -> Self {
+    pub(crate) fn plane(point: Vec3, normal: Vec3, weight: f64) -> Self {
         let d = normal.dot(point);
         Self { a: normal.outer(normal) * weight, b: normal * (d * weight), c: d * d * weight }
     }
 
-    fn plus(&self, other: &Self) -> Self {
+    pub(crate) fn plus(&self, other: &Self) -> Self {
         Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
     }
 
-    fn at(&self, x: Vec3) -> f64 {
+    pub(crate) fn at(&self, x: Vec3) -> f64 {
         (x.dot(self.a * x) - 2.0 * self.b.dot(x) + self.c).max(0.0)
     }
 
     /// Where it is least, unless the planes leave a direction free.
-    fn minimum(&self) -> Option<Vec3> {
+    pub(crate) fn minimum(&self) -> Option<Vec3> {
         let [p, q, r] = self.a.columns;
         let volume = p.dot(q.cross(r));
         let scale = self.a.columns.iter().map(|column| column.length()).fold(0.0, f64::max);
@@ -129,11 +129,11 @@ impl Quadric {
 }
 
 /// A collapse to be tried; out of date when one of its ends has changed since.
-struct Candidate {
-    cost: f64,
-    ends: [u32; 2],
-    ages: [u32; 2],
-    position: Vec3,
+pub(crate) struct Candidate {
+    pub cost: f64,
+    pub ends: [u32; 2],
+    pub ages: [u32; 2],
+    pub position: Vec3,
 }
 
 impl Ord for Candidate {

@@ -33,6 +33,7 @@ use crate::implicit::Shape;
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, available_memory, gigabytes};
 
 pub use options::{Filled, Options, PARAMETERS};
+pub(crate) use surface::carry_groups;
 pub use surface::{FilledSurface, fill_mesh, fill_surface, surface_of};
 
 use lattice::Lattice;

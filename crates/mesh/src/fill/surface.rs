@@ -1,11 +1,12 @@
 //! Fills what triangles enclose: mended first, everything said.
 
+use souple_math::Vec3;
 use souple_table::four_digits;
 
 use super::{FillError, Options, groups, lost};
 use crate::implicit::{Shape, Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, components, repair};
-use crate::{Mesh, MeshError, TriangleSurface};
+use crate::{Group, Mesh, MeshError, TriangleSurface};
 
 /// The inside of a surface.
 #[derive(Clone, Debug)]
@@ -157,4 +158,13 @@ pub fn fill_mesh(mesh: &Mesh, limits: RepairLimits, options: &Options) -> Result
     let outward = groups::outward_areas(&surface, &shape);
     filled.notes.extend(groups::carry(mesh, &surface, &outward, &mut filled.mesh));
     Ok(filled)
+}
+
+/// Carries the groups of a mesh of volumes to another of the same body, which has none.
+pub(crate) fn carry_groups(source: &Mesh, target: &mut Mesh) {
+    let surface = source.boundary_surface();
+    let outward: Vec<Vec3> = (0..surface.triangles.len() as u32).map(|t| surface.area_vector(t)).collect();
+    let points = target.boundary_surface().mesh_points;
+    target.groups.insert(groups::SURFACE.to_owned(), Group { points, ..Group::default() });
+    groups::carry(source, &surface, &outward, target);
 }
