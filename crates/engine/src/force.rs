@@ -11,6 +11,7 @@ use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
 use crate::hand::InHand;
+use crate::holding::Holding;
 use crate::kept::{Kept, KeptRef};
 use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
@@ -371,6 +372,16 @@ pub trait Force: Send + Sync {
 
     /// What steps the points of a body of several meshes, of which at each place one is at work.
     fn levels(&self) -> Option<&dyn Levels> {
+        None
+    }
+
+    /// Whether it acts within a body: its elasticity, its damping, and nothing from outside.
+    fn acts_within(&self) -> bool {
+        self.declaration().internal
+    }
+
+    /// What moves points by itself and feels what they resist with; `None` of a force that only acts on them.
+    fn holding(&self) -> Option<&dyn Holding> {
         None
     }
 

@@ -11,6 +11,7 @@ pub mod force;
 mod frame_mass;
 pub mod hand;
 pub mod hash;
+pub mod holding;
 pub mod implicit;
 pub mod inertia;
 pub mod interruption;
@@ -40,6 +41,7 @@ pub use force::{
 };
 pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;
+pub use holding::{Felt, Holding, Told};
 pub use interruption::Interruption;
 pub use kept::{Kept, KeptRef, Summed, make_room};
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};

@@ -6,6 +6,7 @@ use souple_math::{Mat3, Vec3, logarithm, orthonormalised};
 
 use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
+use crate::holding::HeldPoints;
 use crate::implicit::ImplicitBuffers;
 use crate::interruption::Interruption;
 use crate::kept::{Kept, Summed};
@@ -68,6 +69,7 @@ pub struct SystemWorkspace {
     pub linear: LinearSolver,
     pub implicit: Option<ImplicitBuffers>,
     pub staggered: StaggeredBuffers,
+    pub held: HeldPoints,
     pub stages: StageTimes,
     /// What may break a step off.
     pub interruption: Interruption,
@@ -162,6 +164,7 @@ impl SystemWorkspace {
             + 8 * self.before.memory.capacity()
             + self.tangent.bytes()
             + self.linear.bytes()
+            + self.held.bytes()
             + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
     }
 }
@@ -175,12 +178,20 @@ impl System {
     /// Why its stepper cannot step it, in words that name what stands in the way.
     pub fn refused(&self) -> Option<String> {
         let levels = self.forces.iter().find(|force| force.levels().is_some());
-        match levels.filter(|_| !self.stepper.steps_levels()) {
-            Some(force) => {
-                Some(format!("`{}` has levels, of which only some points move by themselves", force.name()))
-            }
-            None => self.stepper.refuses(self),
+        if let Some(force) = levels.filter(|_| !self.stepper.steps_levels()) {
+            return Some(format!(
+                "`{}` has levels, of which only some points move by themselves",
+                force.name()
+            ));
         }
+        let holds = self.forces.iter().find(|force| force.holding().is_some());
+        if let Some(force) = holds.filter(|_| !self.stepper.holds_points(self)) {
+            return Some(format!(
+                "`{}` moves the points that it holds, which `staggered` does of bodies with levels, and `symplectic_euler` of points with lumped masses",
+                force.name()
+            ));
+        }
+        self.stepper.refuses(self)
     }
 
     /// Where each force's numbers stand in [`SystemState::memory`].
@@ -233,6 +244,7 @@ impl System {
             linear: LinearSolver::new(self.stepper.solver_settings()),
             implicit: None,
             staggered: StaggeredBuffers::default(),
+            held: HeldPoints::default(),
             stages: StageTimes::default(),
             interruption: Interruption::default(),
         }
@@ -533,6 +545,17 @@ impl System {
         }
         if jumped {
             self.stepper.forget_forces(state);
+        }
+    }
+
+    /// Lets forces that hold points look which, at the placed rows, where a period begins.
+    pub fn look(&self, ws: &mut SystemWorkspace, state: &mut SystemState, around: &Surroundings) {
+        ws.before.memory.clone_from(&state.memory);
+        ws.before.pairs.clone_from(&state.pairs);
+        for (index, force) in self.forces.iter().enumerate() {
+            let Some(holding) = force.holding() else { continue };
+            let at = self.view(index, &ws.rows, &ws.before, around);
+            holding.look(&at, &mut ws.scratches[index], &mut state.memory[self.memory_range(index)]);
         }
     }
 

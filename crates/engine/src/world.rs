@@ -435,6 +435,14 @@ impl World {
         let (clock, before) = (Instant::now(), ws.stages.total());
         let has_pairs = system.has_pairs();
         let (reads_rows, ends_steps) = (ws.rows_are_the_state, system.ends_steps());
+        if system.holds() {
+            let clock = Instant::now();
+            let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
+            let state = &mut next.systems[index];
+            system.place_rows(&state.q, &state.v, start, &mut ws.rows);
+            system.look(ws, state, &around);
+            ws.stages.pairs += clock.elapsed().as_secs_f64();
+        }
         for step in 0..system.steps_per_period {
             ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
             let time = start + f64::from(step) * timestep;

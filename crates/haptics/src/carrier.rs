@@ -158,6 +158,48 @@ impl HandCarrier {
     }
 }
 
+/// What the device is told at a tick.
+enum Feeling {
+    /// Where its tool is, to which it is coupled.
+    Tool(Moving),
+    /// The force itself [N].
+    Force(Vec3),
+}
+
+impl HandCarrier {
+    /// Moves arm and tool on in parts of a tick at most, and tells the device at each tick what it feels.
+    fn tick_through(
+        &self,
+        told: f64,
+        timestep: f64,
+        memory: &mut [f64],
+        move_on: &mut dyn FnMut(f64, &mut [f64], &mut HandState) -> Feeling,
+    ) {
+        let mut left = timestep;
+        while left > ROUNDING * TICK {
+            let mut state = HandState::read(memory);
+            let h = left.min(TICK - state.since_tick);
+            let feeling = move_on(h, memory, &mut state);
+            state.since_tick += h;
+            left -= h;
+            if state.since_tick >= TICK * (1.0 - ROUNDING) {
+                state.since_tick = 0.0;
+                let device = self.has_device(&state).then_some(state.arm.hand.place);
+                match feeling {
+                    Feeling::Tool(tool) => self.rest.port.tick(&mut state.port, device, tool),
+                    Feeling::Force(force) => self.rest.port.tick_with(&mut state.port, device, force),
+                }
+                // what an implicit step tells is of its own end
+                state.age = state.age.max((state.arm.time - told).max(0.0) + TICK);
+                if let Some(arm) = &self.arm {
+                    arm.tick(&mut memory[LEN..], &mut state.arm);
+                }
+            }
+            state.write(&mut memory[..LEN]);
+        }
+    }
+}
+
 impl Carrier for HandCarrier {
     fn memory_len(&self) -> usize {
         LEN + self.arm.as_ref().map_or(0, Arm::history_len)
@@ -180,37 +222,32 @@ impl Carrier for HandCarrier {
     }
 
     fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, told: f64, timestep: f64, memory: &mut [f64]) {
-        let mut left = timestep;
-        while left > ROUNDING * TICK {
-            let mut state = HandState::read(memory);
-            let pose = self.pose(memory);
-            let history = &mut memory[LEN..];
-            let h = left.min(TICK - state.since_tick);
+        self.tick_through(told, timestep, memory, &mut |h, memory, state| {
             if self.begins_period(state.arm.time) {
                 state.held = state.tool.place;
             }
-            let pressed = pressed(&pose);
-            self.move_tool(h, &pressed, &mut state);
-            self.move_device(h, history, &mut state);
-            state.since_tick += h;
-            left -= h;
-            if state.since_tick >= TICK * (1.0 - ROUNDING) {
-                state.since_tick = 0.0;
-                let device = self.has_device(&state).then_some(state.arm.hand.place);
-                let felt = if self.rest.is_held {
-                    Moving { place: state.held, velocity: Vec3::ZERO }
-                } else {
-                    state.tool
-                };
-                self.rest.port.tick(&mut state.port, device, felt);
-                // what an implicit step tells is of its own end
-                state.age = state.age.max((state.arm.time - told).max(0.0) + TICK);
-                if let Some(arm) = &self.arm {
-                    arm.tick(history, &mut state.arm);
-                }
+            let pressed = pressed(&self.pose(memory));
+            self.move_tool(h, &pressed, state);
+            self.move_device(h, &mut memory[LEN..], state);
+            Feeling::Tool(if self.rest.is_held {
+                Moving { place: state.held, velocity: Vec3::ZERO }
+            } else {
+                state.tool
+            })
+        });
+    }
+
+    fn advance_held(&self, felt: Vec3, told: f64, timestep: f64, memory: &mut [f64]) {
+        self.tick_through(told, timestep, memory, &mut |h, memory, state| {
+            self.move_device(h, &mut memory[LEN..], state);
+            // a device that is lost leaves its tool where it was
+            if self.has_device(state) {
+                state.tool = state.arm.hand;
+            } else {
+                state.tool.velocity = Vec3::ZERO;
             }
-            state.write(&mut memory[..LEN]);
-        }
+            Feeling::Force(felt)
+        });
     }
 
     fn lead(&mut self, place: Vec3) {

@@ -48,6 +48,15 @@ impl Port {
 
     /// A tick: the device is at `device`, `None` where it is lost; the force on the hand is in the state afterwards.
     pub fn tick(&self, state: &mut PortState, device: Option<Vec3>, tool: Moving) {
+        self.tick_as(state, device, |hand| self.coupling.pull(tool, hand));
+    }
+
+    /// The same of a device that feels a force itself, and not where its tool is.
+    pub fn tick_with(&self, state: &mut PortState, device: Option<Vec3>, force: Vec3) {
+        self.tick_as(state, device, |_| force);
+    }
+
+    fn tick_as(&self, state: &mut PortState, device: Option<Vec3>, pull: impl Fn(Moving) -> Vec3) {
         let Some(place) = device else {
             // nobody is there to feel anything
             *state = PortState { force: Vec3::ZERO, engaged: 0.0, ..*state };
@@ -61,7 +70,7 @@ impl Port {
         state.energy -= state.force.dot(moved);
         state.engaged = (state.engaged + TICK / ENGAGING).min(1.0);
         let hand = Moving { place, velocity: moved / TICK };
-        let pull = self.coupling.limited(self.coupling.pull(tool, hand) * state.engaged);
+        let pull = self.coupling.limited(pull(hand) * state.engaged);
         let force = if self.passive { fitting(pull, hand.velocity, state.energy) } else { pull };
         state.jump = state.jump.max((force - state.force).length());
         (state.place, state.force) = (place, force);

@@ -15,6 +15,8 @@ pub struct Trace {
     pub quantity: &'static str,
     /// 1 or 3.
     pub components: usize,
+    /// The date from which on extremes are taken [s].
+    pub since: f64,
     /// [s]
     pub times: Vec<f64>,
     /// Value after value.
@@ -41,6 +43,7 @@ impl Trace {
             unit: probe.unit,
             quantity: probe.quantity,
             components: if probe.gives_vector() { 3 } else { 1 },
+            since: probe.since,
             times: Vec::new(),
             values: Vec::new(),
         }
@@ -69,11 +72,15 @@ impl Trace {
     }
 
     pub fn summary(&self) -> Summary {
+        // of a run that ends before that date, the last one
+        let early = self.times.iter().take_while(|time| **time < self.since).count();
+        let first = early.min(self.times.len().saturating_sub(1));
+        let counted = &self.values[first * self.components..];
         // a value that is not a number is not passed over
         let pick = |fold: fn(f64, f64) -> f64, start: f64| -> Vec<f64> {
             let keep = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { fold(a, b) };
             (0..self.components)
-                .map(|c| self.values.iter().skip(c).step_by(self.components).fold(start, |a, b| keep(a, *b)))
+                .map(|c| counted.iter().skip(c).step_by(self.components).fold(start, |a, b| keep(a, *b)))
                 .collect()
         };
         Summary {

@@ -107,3 +107,61 @@ fn forces_do_not_jump_between_periods() {
     assert!(even < 0.05, "{even}");
     assert!(held > 0.05, "{held}");
 }
+
+const PRESS: &str = include_str!("../../../scenes/held_press/scene.toml");
+
+/// A coarse slab that is pressed after a tenth of a second.
+const SOON: [&str; 2] =
+    ["bodies.slab.mesh.cells=[8, 8, 3]", "hands.right.motion.times=[0, 0.02, 0.2, 1, 1.1]"];
+
+/// The same slab of two meshes, refined where it is pressed.
+const OF_LEVELS: [&str; 4] = [
+    "systems.main.stepper={ name = \"staggered\", halvings = 5 }",
+    "systems.main.steps_per_period=1",
+    "bodies.slab.damping={ rayleigh_mass = 20, viscosity = \"1 Pa s\" }",
+    "bodies.slab.levels={ count = 2, refine = 0.1, coarsen = 0.04 }",
+];
+
+fn press(settings: &[&str]) -> Scene {
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+    read_text("held_press", PRESS, Path::new("."), &settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Which points are held, how they are led and what they bear is in State: a run that goes on from a snapshot in the midst of pressing ends
+/// with the same bits, of a body of one mesh and of one with levels.
+#[test]
+fn points_are_held_on_from_snapshots() {
+    let of_levels: Vec<&str> = SOON.into_iter().chain(OF_LEVELS).collect();
+    for settings in [&SOON[..], &of_levels[..]] {
+        let run_on = |options: &Options| {
+            let outcome = run(press(settings), options, &mut |_| Control::Continue).expect("a run");
+            assert!(outcome.report.failure.is_none(), "{:?}", outcome.report.failure);
+            outcome
+        };
+        let whole = run_on(&Options { steps: Some(36), ..Options::default() });
+        let half = run_on(&Options { steps: Some(18), ..Options::default() });
+        let pressed = half.traces.iter().find(|trace| trace.name == "on_slab").and_then(|trace| trace.last());
+        assert!(pressed.is_some_and(|force| force[2] < -1e-3), "{pressed:?}");
+        let (binary, isa) = (souple_run::binary(), souple_run::instruction_set());
+        let state = half.world.state().clone();
+        let resume = Snapshot { state, commands: Vec::new(), seed: 0, binary, isa: isa.to_owned() };
+        let rest = run_on(&Options { steps: Some(18), resume: Some(resume), ..Options::default() });
+        assert_eq!(whole.report.hashes.last(), rest.report.hashes.last());
+    }
+}
+
+/// Where nothing leads points, and which keys say nothing, is said.
+#[test]
+fn wrong_holds() {
+    let refused = |text: &str, setting: &str, expected: &str| {
+        let read = read_text("scene", text, Path::new("."), &[setting.to_owned()]);
+        let error = read.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains(expected), "{setting}: {error}");
+    };
+    let imposed = |more: &str| format!("hands.right.touch={{ response = \"imposed\"{more} }}");
+    refused(CUBE, &imposed(", detect = \"triangles\""), "`hands.right` moves the points that it holds");
+    refused(PRESS, &imposed(""), "displacements are imposed on triangles");
+    refused(PRESS, &imposed(", detect = \"triangles\", friction = 0.5"), "`friction` says nothing");
+    refused(PRESS, "hands.right.touch={ detect = \"triangles\", residual = 0 }", "`residual` says nothing");
+    refused(PRESS, &imposed(", detect = \"triangles\", fraction = 1.5"), "1.5");
+}

@@ -128,9 +128,14 @@ fn step_points(
         system.place_rows(&next.q, &next.v, start, &mut ws.rows);
     }
     ws.rows.time = start;
-    sum_placed_forces(system, around, next, ws)?;
+    if system.holds() {
+        sum_held_forces(step, next, ws)?;
+    } else {
+        sum_placed_forces(system, around, next, ws)?;
+    }
     system.advance_memory(ws, next, around, timestep, Summed::Here);
     system.project_free(&mut ws.row_force);
+    ws.held.take_over(&mut ws.row_force, &mut ws.rows.velocities);
     let (forces, masses, rows) = (&ws.row_force, &system.mass.diagonal, &mut ws.rows);
     let (q, v) = (&mut rows.positions, &mut rows.velocities);
     let copies = [&mut next.q[..], &mut next.v[..]];
@@ -145,6 +150,34 @@ fn step_points(
         (next.q[block], next.v[block]) = (q[block], v[block]);
     }
     Ok(StepReport::default())
+}
+
+/// Sums forces over the placed rows, and lets who holds points feel what bodies do to these.
+///
+/// # Errors
+/// A force is not finite.
+fn sum_held_forces(step: &Step, next: &mut SystemState, ws: &mut SystemWorkspace) -> Result<(), StepError> {
+    let Step { system, around, timestep, .. } = *step;
+    ws.held.gather(system, next, &ws.scratches, &ws.rows);
+    ws.row_force.fill(Vec3::ZERO);
+    for within in [true, false] {
+        for (index, force) in system.forces.iter().enumerate() {
+            if force.acts_within() == within {
+                let at = system.view(index, &ws.rows, next, around);
+                force.add_force(&at, &mut ws.scratches[index], &mut ws.row_force);
+            }
+        }
+        if within {
+            ws.held.note(&ws.row_force);
+            ws.held.feel(system, next, timestep);
+            ws.held.note_forces(system, next, &ws.scratches);
+        }
+    }
+    if reduce::all_finite(&ws.row_force) {
+        return Ok(());
+    }
+    let found = system.first_force_not_finite(&ws.rows, next, around, &mut ws.scratches);
+    found.map_or(Ok(()), Err)
 }
 
 /// `v += h a`.
@@ -216,6 +249,10 @@ impl Stepper for SymplecticEuler {
     }
 
     fn reads_rows(&self, system: &System, _: &SystemState) -> bool {
+        steps_points(system) && !system.holds()
+    }
+
+    fn holds_points(&self, system: &System) -> bool {
         steps_points(system)
     }
 

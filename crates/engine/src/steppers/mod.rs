@@ -216,6 +216,11 @@ pub trait Stepper: Send + Sync {
         false
     }
 
+    /// Whether it leads points that forces hold, see [`crate::Holding`].
+    fn holds_points(&self, _system: &System) -> bool {
+        false
+    }
+
     /// How it divides such a step, and which rates it takes together; `None` where it does not.
     fn ticks(&self, _timestep: f64) -> Option<(Division, Schedule)> {
         None

@@ -5,6 +5,7 @@ use std::ops::Range;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
 
+use crate::holding::HeldPoints;
 use crate::kept::Summed;
 use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Pace, Push};
 use crate::state::{SystemState, pairs_of};
@@ -164,6 +165,7 @@ struct Stage<'a, 'b> {
     next: &'a mut SystemState,
     ws: &'a mut SystemWorkspace,
     buffers: &'a mut StaggeredBuffers,
+    held: &'a mut HeldPoints,
 }
 
 impl Stage<'_, '_> {
@@ -234,11 +236,37 @@ impl Stage<'_, '_> {
                 let steady = &self.buffers.steady;
                 levels.accelerate(rate, &self.division, scratch, steady, &mut ws.rows.velocities);
                 levels.add_impulses(rate, &self.division, &ws.rows, scratch, &mut ws.row_force);
+                let interval = self.division.interval(rate);
+                self.held.note_rate(rate, levels.rows(), interval, &ws.row_force);
                 let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
                 levels.kick(Push::Elastic { rate }, &self.division, scratch, impulses, velocities);
             }
         }
         ws.stages.forces += clock.elapsed().as_secs_f64();
+    }
+
+    /// Takes hold of points, with the forces of all rates that act on them as the step begins.
+    fn take_hold(&mut self) {
+        let Step { system, .. } = *self.step;
+        let ws = &mut *self.ws;
+        self.held.gather(system, self.next, &ws.scratches, &ws.rows);
+        self.held.begin_rates(self.division.halvings as usize + 1);
+        if self.held.is_empty() {
+            return;
+        }
+        for (index, levels) in bodies(system) {
+            for rate in 0..=self.division.halvings {
+                levels.add_impulses(
+                    rate,
+                    &self.division,
+                    &ws.rows,
+                    &mut ws.scratches[index],
+                    &mut ws.row_force,
+                );
+                self.held.note_rate(rate, levels.rows(), self.division.interval(rate), &ws.row_force);
+                ws.row_force[levels.rows()].fill(Vec3::ZERO);
+            }
+        }
     }
 
     /// Moves what is active for a tick that ends at `end`; what is led is where it is led to.
@@ -251,6 +279,7 @@ impl Stage<'_, '_> {
         for row in self.buffers.others.iter().flat_map(Clone::clone) {
             rows.positions[row] += rows.velocities[row] * timestep;
         }
+        self.held.lead(timestep, rows);
         system.impose_constraints(&mut rows.positions, &mut rows.velocities, end, around.load);
         rows.time = end;
     }
@@ -265,6 +294,10 @@ impl Stage<'_, '_> {
             levels.adapt(&self.division, &mut self.ws.rows, memory, scratch);
         }
         self.ws.row_force.fill(Vec3::ZERO);
+        let holds = system.holds();
+        if holds {
+            self.take_hold();
+        }
         let ticks = self.division.ticks();
         let tick_length = timestep / f64::from(ticks);
         self.hold_steady();
@@ -275,10 +308,17 @@ impl Stage<'_, '_> {
             }
             self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);
+            if holds {
+                self.held.sum_rates();
+                self.held.feel(system, self.next, tick_length);
+            }
             system.advance_memory(self.ws, self.next, around, tick_length, Summed::Elsewhere);
             self.drift(tick_length, start + f64::from(tick + 1) * tick_length);
             follow(system, Followers::Ghosts, self.ws);
             follow(system, Followers::These(&self.buffers.watched), self.ws);
+        }
+        if holds {
+            self.held.note_forces(system, self.next, &self.ws.scratches);
         }
         follow(system, Followers::All, self.ws);
         // what is held is where it is held, also where coarser points carry it
@@ -311,6 +351,10 @@ impl Stepper for Staggered {
         true
     }
 
+    fn holds_points(&self, system: &System) -> bool {
+        system.holds_levels_alone()
+    }
+
     fn ticks(&self, timestep: f64) -> Option<(Division, Schedule)> {
         Some((self.division(timestep), self.schedule))
     }
@@ -332,17 +376,18 @@ impl Stepper for Staggered {
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let division = self.division(step.timestep);
-        let mut buffers = std::mem::take(&mut ws.staggered);
+        let (mut buffers, mut held) = (std::mem::take(&mut ws.staggered), std::mem::take(&mut ws.held));
         buffers.prepare(step.system, next);
         // all rows are points: they move where they stand
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
         ws.rows.time = step.start;
-        let mut stage = Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers };
+        let mut stage =
+            Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers, held: &mut held };
         let ran = stage.run(self.schedule);
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
-        ws.staggered = buffers;
+        (ws.staggered, ws.held) = (buffers, held);
         ran.map(|()| StepReport::default())
     }
 }

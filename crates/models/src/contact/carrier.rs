@@ -29,6 +29,9 @@ pub trait Carrier: Send + Sync + Debug {
     /// Moves on by `timestep`, while what is touched stays as it is at the date `told` [s].
     fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, told: f64, timestep: f64, memory: &mut [f64]);
 
+    /// Moves on by `timestep` with the shape where the device is: that feels `felt` [N] itself, told at the date `told` [s].
+    fn advance_held(&self, felt: Vec3, told: f64, timestep: f64, memory: &mut [f64]);
+
     /// Where the device is to be at the end of the period, from where it started [m].
     fn lead(&mut self, place: Vec3);
 

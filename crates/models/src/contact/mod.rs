@@ -1,10 +1,15 @@
-//! Contact: bodies against shapes, and body against body, by penalty with Coulomb friction.
+//! Contact: bodies against shapes, and body against body, by penalty with Coulomb friction, or by displacements.
 //!
 //! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] (points),
-//! [`ToolContact`] (triangles) and [`SurfaceContact`] find what touches and hand the forces to rows.
+//! [`ToolContact`] (triangles) and [`SurfaceContact`] find what touches and hand the forces to rows. [`ImposedContact`] does not
+//! push: it moves the points that it holds.
 
 mod burden;
 mod carrier;
+mod clip;
+mod imposed;
+#[cfg(test)]
+mod imposed_tests;
 pub mod law;
 mod leading;
 #[cfg(test)]
@@ -20,6 +25,7 @@ mod tool_tests;
 mod toolbox;
 
 pub use carrier::{Carrier, Pressed};
+pub use imposed::{Displacing, ImposedContact, ImposedLaw};
 pub use law::{ContactForce, ContactLaw, penalty_stiffness};
 pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};

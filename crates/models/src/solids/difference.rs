@@ -52,6 +52,10 @@ impl Force for DifferencedForce {
         self.inner.name()
     }
 
+    fn acts_within(&self) -> bool {
+        self.inner.acts_within()
+    }
+
     fn declaration(&self) -> Declaration {
         self.inner.declaration()
     }

@@ -440,6 +440,10 @@ impl Force for SolidForce {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         self.declaration
     }

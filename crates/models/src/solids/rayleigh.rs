@@ -68,6 +68,10 @@ impl Force for RayleighDamping {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         Declaration { conservative: false, velocity_terms: true, internal: false, ..Declaration::ELASTIC }
     }

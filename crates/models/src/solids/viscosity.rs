@@ -96,6 +96,10 @@ impl Force for Viscosity {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         Declaration {
             conservative: false,

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use souple_engine::Force;
+use souple_engine::{Felt, Force};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_models::contact::shape::{BuildShape, ShapeError};
 use souple_models::contact::{
-    ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, ToolContact, ToolSurface,
-    penalty_stiffness,
+    ContactLaw, ContactPoint, ContactSurface, ImposedContact, ImposedLaw, Shape, ShapeContact,
+    SurfaceContact, ToolContact, ToolSurface, penalty_stiffness,
 };
 use souple_models::loads::RigidMotion;
 use souple_skin::BAND;
@@ -21,7 +21,7 @@ use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::scene::SkinInfo;
-use crate::spec::contact::{Against, Contact, Detect, ShapeSpec, Weighing};
+use crate::spec::contact::{Against, Contact, Detect, Imposed, ShapeSpec, Weighing};
 
 /// A body's points that touch, with the areas around them.
 pub(super) struct Touching {
@@ -222,13 +222,24 @@ fn against_shape(
         return None;
     }
     let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
-    let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
+    let mut joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
+    if contact.imposed.is_some() {
+        // nothing pushes
+        joints.clear();
+    }
     let force: Result<Box<dyn Force>, _> =
         match tool_surface(draft, contact, body, &touching, built.as_ref())? {
-            Some((surface, numbers)) => {
-                ToolContact::new(contact.name.clone(), surface, built, motion, stiff(contact, law), numbers)
-                    .map(|force| Box::new(weighed(contact, force).against(&shape.name)) as _)
-            }
+            Some((surface, numbers)) => match imposed(draft, contact) {
+                Some((law, period)) => {
+                    ImposedContact::new(contact.name.clone(), surface, built, motion, law, period)
+                        .map(|force| Box::new(force.against(&shape.name)) as _)
+                }
+                None => {
+                    let law = stiff(contact, law);
+                    ToolContact::new(contact.name.clone(), surface, built, motion, law, numbers)
+                        .map(|force| Box::new(weighed(contact, force).against(&shape.name)) as _)
+                }
+            },
             None => ShapeContact::new(contact.name.clone(), touching.points, built, motion, law)
                 .map(|force| Box::new(force.against(&shape.name)) as _),
         };
@@ -259,6 +270,16 @@ pub(super) fn weighed(contact: &Contact, force: ToolContact) -> ToolContact {
     if contact.weigh == Weighing::Alike { force.weighing_alike() } else { force }
 }
 
+/// How displacements are imposed, and how long a period is [s]; `None` of a penalty.
+pub(super) fn imposed(draft: &Draft, contact: &Contact) -> Option<(ImposedLaw, f64)> {
+    let Imposed { fraction, residual, displacing } = contact.imposed?;
+    let felt = match contact.weigh {
+        Weighing::Area => Felt::Area,
+        Weighing::Alike => Felt::Sum,
+    };
+    Some((ImposedLaw { fraction, residual, displacing, felt }, draft.spec.world.period))
+}
+
 /// The triangles of a body that a tool touches, with the reach [m] and the time [s] between searches, where a contact looks at
 /// triangles. `None` where they were refused.
 #[allow(clippy::type_complexity)]
@@ -279,6 +300,11 @@ pub(super) fn tool_surface(
     if body.spec.network.is_some() {
         let message = format!("masses of network `{}` have no triangles between them", contact.body);
         return refuse(message, "`detect = \"points\"`");
+    }
+    if contact.imposed.is_some() && body.spec.octree.is_some() {
+        let message =
+            format!("points of body `{}` are particles of an octree, which no tool holds", contact.body);
+        return refuse(message, "`response = \"penalty\"`");
     }
     if shape.parts().is_empty() {
         let message = "triangles are touched by tools of rounded parts".to_owned();

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use souple_engine::{Force, Motion};
 use souple_haptics::{Between, HandCarrier, Rest};
 use souple_math::Vec3;
-use souple_models::contact::{ShapeContact, ToolContact};
+use souple_models::contact::{ImposedContact, ShapeContact, ToolContact};
 use souple_models::loads::RigidMotion;
 
 use super::Draft;
-use super::contact::{built, law, modulus_of, stiff, tool_surface, touching, weighed};
+use super::contact::{built, imposed, law, modulus_of, stiff, tool_surface, touching, weighed};
 use super::motion::motion;
 use crate::diagnostic::Code;
 use crate::scene::HandInfo;
@@ -48,10 +48,17 @@ fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, Box<dyn Force>)>
     let force = hand.touch.name.clone();
     let made: Result<Box<dyn Force>, _> =
         match tool_surface(draft, &hand.touch, body, &touching, shape.as_ref())? {
-            Some((surface, numbers)) => {
-                ToolContact::carried(force.clone(), surface, shape, carrier, stiff(&hand.touch, law), numbers)
-                    .map(|contact| Box::new(weighed(&hand.touch, contact)) as _)
-            }
+            Some((surface, numbers)) => match imposed(draft, &hand.touch) {
+                Some((law, period)) => {
+                    ImposedContact::carried(force.clone(), surface, shape, carrier, law, period)
+                        .map(|contact| Box::new(contact) as _)
+                }
+                None => {
+                    let law = stiff(&hand.touch, law);
+                    ToolContact::carried(force.clone(), surface, shape, carrier, law, numbers)
+                        .map(|contact| Box::new(weighed(&hand.touch, contact)) as _)
+                }
+            },
             None => ShapeContact::carried(force.clone(), touching.points, shape, carrier, law)
                 .map(|contact| Box::new(contact) as _),
         };

@@ -8,10 +8,12 @@ use crate::scene::HandInfo;
 use crate::spec::quantity::HandQuantity;
 
 pub fn measure(quantity: HandQuantity, hand: &HandInfo, world: &World) -> Measurement {
-    let (mut force, mut penetration) = (Vec3::ZERO, 0.0_f64);
-    if matches!(quantity, HandQuantity::ToolForce | HandQuantity::ToolPenetration)
+    use HandQuantity::{ToolForce, ToolJump, ToolPenetration};
+    let (mut force, mut penetration, mut jump) = (Vec3::ZERO, 0.0_f64, 0.0);
+    if matches!(quantity, ToolForce | ToolPenetration | ToolJump)
         && let Some((tool, at)) = world.force_named(hand.system, &hand.force)
     {
+        jump = tool.holding().map_or(0.0, |holding| holding.jump(at.memory));
         tool.visit_contacts(&at, &mut |point| {
             force += point.normal_force + point.friction;
             penetration = penetration.max(point.penetration);
@@ -27,5 +29,6 @@ pub fn measure(quantity: HandQuantity, hand: &HandInfo, world: &World) -> Measur
         HandQuantity::ToolPosition => Measurement::Vector(held.tool),
         HandQuantity::ToolForce => Measurement::Vector(force),
         HandQuantity::ToolPenetration => Measurement::Number(penetration),
+        HandQuantity::ToolJump => Measurement::Number(jump),
     }
 }

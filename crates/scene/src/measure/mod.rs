@@ -43,6 +43,8 @@ pub struct ProbeInfo {
     pub unit: &'static str,
     /// The quantity's name.
     pub quantity: &'static str,
+    /// The date from which on extremes are taken [s].
+    pub since: f64,
     rank: Rank,
     component: Option<Component>,
     reduction: Reduction,
@@ -228,6 +230,7 @@ impl ProbeInfo {
             name: probe.name.clone(),
             unit: probe.quantity.build.unit,
             quantity: probe.quantity.name,
+            since: probe.since,
             rank: probe.rank(),
             component: probe.component,
             reduction: probe.reduction,

@@ -1,8 +1,8 @@
 //! Shapes that bodies touch, and who touches whom.
 
 use souple_math::Vec3;
-use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
+use souple_models::contact::{Displacing, SHAPES};
 use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec, TURNING};
@@ -54,10 +54,80 @@ pub(super) const DETECT: Key = Key::new(
 pub(super) const WEIGH: Key = Key::new(
     "weigh",
     Shape::Choice(&WEIGHINGS),
-    "whether the stiffness of each point or triangle is in proportion to its area, or all are alike, which depends on the mesh",
+    "whether the stiffness of each point or triangle is in proportion to its area, or all are alike, which depends on the mesh; of imposed displacements, whether each held point is felt by the part of its area that is in touch, or wholly",
 )
 .or(Value::Text(WEIGHINGS[0]));
 const WEIGHINGS: [&str; 2] = ["area", "alike"];
+
+pub(super) const RESPONSE: Key = Key::new(
+    "response",
+    Shape::Choice(&RESPONSES),
+    "a penalty pushes what is inside; imposed, triangles are moved out by displacements, and the points held that they move: of `detect = \"triangles\"`, in systems of `staggered` or `symplectic_euler`",
+)
+.or(Value::Text(RESPONSES[0]));
+const RESPONSES: [&str; 2] = ["penalty", "imposed"];
+pub(super) const FRACTION: Key = Key::number(
+    "fraction",
+    "",
+    Range::closed(0.0, 1.0),
+    "of the way out that imposed displacements go in a period",
+)
+.or(Value::Number(1.0));
+pub(super) const RESIDUAL: Key = Key::number(
+    "residual",
+    "m",
+    Range::NOT_NEGATIVE,
+    "how deep a triangle stays that is moved out, so that it stays in touch",
+)
+.or(Value::Number(1e-4));
+pub(super) const PROGRESSIVE: Key = Key::new(
+    "progressive",
+    Shape::Boolean,
+    "whether imposed displacements go evenly through the steps of a period, or in its first step at once",
+)
+.or(Value::Boolean(true));
+
+/// Keys of a penalty that displacements have no use for.
+const OF_PENALTY: [&str; 5] = ["stiffness", "friction", "damping", "tangential_stiffness", "thickness"];
+/// Keys of displacements that a penalty has no use for.
+const OF_IMPOSED: [&str; 3] = ["fraction", "residual", "progressive"];
+
+/// Displacements in the place of a penalty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imposed {
+    pub fraction: f64,
+    /// [m]
+    pub residual: f64,
+    pub displacing: Displacing,
+}
+
+impl Imposed {
+    /// `None` of a penalty; keys without effect are refused.
+    pub(super) fn read(reader: &Reader) -> Option<Self> {
+        let response = reader.choice("response");
+        let is_imposed = response == RESPONSES[1];
+        let (idle, instead): (&[&'static str], &str) =
+            if is_imposed { (&OF_PENALTY, RESPONSES[0]) } else { (&OF_IMPOSED, RESPONSES[1]) };
+        for key in reader.written(idle) {
+            let message = format!("`{key}` says nothing to `response = \"{response}\"`");
+            let expected = format!("`response = \"{instead}\"`, or no `{key}`");
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        }
+        if is_imposed && Detect::named(reader.choice("detect")) == Detect::Points {
+            let message = "displacements are imposed on triangles";
+            reader.log().add(Code::Conflict, &reader.site(), message, "`detect = \"triangles\"`");
+        }
+        is_imposed.then(|| Self {
+            fraction: reader.number("fraction"),
+            residual: reader.number("residual"),
+            displacing: if reader.boolean("progressive") {
+                Displacing::Progressively
+            } else {
+                Displacing::AtOnce
+            },
+        })
+    }
+}
 
 /// How the stiffness of a contact is shared out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +188,10 @@ pub(crate) static CONTACT: Keys = Keys::new(
         DAMPING,
         TANGENTIAL_STIFFNESS,
         THICKNESS,
+        RESPONSE,
+        FRACTION,
+        RESIDUAL,
+        PROGRESSIVE,
     ],
 );
 
@@ -154,6 +228,8 @@ pub struct Contact {
     pub damping: f64,
     pub tangential_stiffness: Option<f64>,
     pub thickness: f64,
+    /// Displacements in the place of the penalty.
+    pub imposed: Option<Imposed>,
     pub site: Site,
 }
 
@@ -185,6 +261,11 @@ impl Contact {
                 None
             }
         };
+        let imposed = Imposed::read(reader);
+        if imposed.is_some() && matches!(against, Some(Against::Body(_) | Against::Skin(_))) {
+            let message = "displacements are imposed by a tool, which is a shape";
+            reader.log().add(Code::Conflict, &reader.site(), message, "`shape`, or `response = \"penalty\"`");
+        }
         Self {
             name: reader.maybe_text("name").unwrap_or_else(|| format!("contacts[{index}]")),
             body: reader.text("body"),
@@ -197,6 +278,7 @@ impl Contact {
             damping: reader.number("damping"),
             tangential_stiffness: reader.maybe_number("tangential_stiffness"),
             thickness: reader.number("thickness"),
+            imposed,
             site: reader.site(),
         }
     }

@@ -7,7 +7,8 @@ use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec};
 use super::contact::{
-    Contact, DAMPING, DETECT, Detect, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS, WEIGH, Weighing,
+    Contact, DAMPING, DETECT, Detect, FRACTION, FRICTION, Imposed, PROGRESSIVE, RESIDUAL, RESPONSE,
+    TANGENTIAL_STIFFNESS, THICKNESS, WEIGH, Weighing,
 };
 use super::region::Region;
 use crate::diagnostic::Site;
@@ -45,6 +46,10 @@ static TOUCH: Keys = Keys::new(
         DAMPING,
         TANGENTIAL_STIFFNESS,
         THICKNESS,
+        RESPONSE,
+        FRACTION,
+        RESIDUAL,
+        PROGRESSIVE,
     ],
 );
 
@@ -139,6 +144,7 @@ impl HandSpec {
                 damping: number("damping"),
                 tangential_stiffness: maybe("tangential_stiffness"),
                 thickness: number("thickness"),
+                imposed: touch.as_ref().and_then(Imposed::read),
                 site: reader.site(),
             },
             port: Port { coupling, passive: reader.boolean("passive") },

@@ -2,7 +2,7 @@
 
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_table::Range;
+use souple_table::{Range, Value};
 
 use super::boundary::LOAD_VARIABLES;
 use super::quantity::{
@@ -64,6 +64,13 @@ pub(crate) static PROBE: Keys = Keys::new(
         Key::new("contour", Shape::Text, "of the network, for quantities of contours"),
         Key::new("from", Shape::Text, "the contour that `contour.apart` is counted from"),
         Key::number("within", "m", Range::POSITIVE, "how far apart masses count as neighbours"),
+        Key::number(
+            "since",
+            "s",
+            Range::NOT_NEGATIVE,
+            "the date from which on `min` and `max` of reports are taken",
+        )
+        .or(Value::Number(0.0)),
     ],
 );
 
@@ -90,6 +97,8 @@ pub struct Probe {
     pub from: Option<String>,
     /// How far apart masses count as neighbours [m].
     pub within: Option<f64>,
+    /// The date from which on extremes are taken [s].
+    pub since: f64,
     pub site: Site,
 }
 
@@ -187,6 +196,7 @@ impl Probe {
             contour: reader.maybe_text("contour"),
             from: reader.maybe_text("from"),
             within: reader.maybe_number("within"),
+            since: reader.number("since"),
             site: reader.site(),
         }
     }

@@ -99,6 +99,7 @@ pub enum HandQuantity {
     ToolPosition,
     ToolForce,
     ToolPenetration,
+    ToolJump,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -728,6 +729,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "how deep points of the body are in the tool of a hand",
         HAPTICS,
         hand("m", Number, HandQuantity::ToolPenetration),
+    ),
+    &entry(
+        "tool.jump",
+        "greatest change of the force of the tool of a hand from one step to the next within the last period, over the larger of the two; of a tool that holds points",
+        HAPTICS,
+        hand("", Number, HandQuantity::ToolJump),
     ),
     &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
     &entry(

@@ -86,6 +86,23 @@ const LIVER: Case = Case {
     mutation: r#"hands.right.coupling={ stiffness = "4000 N/m", damping = 2, limit = "5 N" }"#,
 };
 
+/// A touch with all that smooths.
+const IMPOSED: &str = r#"hands.right.touch={ detect = "triangles", response = "imposed" }"#;
+
+const HELD: Case = Case {
+    id: "hand_jump_held",
+    capabilities: &["DEB-46", "DEB-47"],
+    what: "greatest change of the force on a ball from one step to the next, over the force, while it presses a slab at 3 mm/s and holds the points that it touches",
+    scene: "held_press",
+    settings: &[],
+    reading: Reading::last("jump").taking(Statistic::Max),
+    refinement: None,
+    reference: 0.05,
+    tolerance: Tolerance::AtMost,
+    source: "V-43: with area weighting, progressive displacement and a residual depth, at most 5 % of the current force",
+    mutation: r#"hands.right.touch={ detect = "triangles", response = "imposed", progressive = false }"#,
+};
+
 pub(super) const CASES: &[Case] = &[
     NEEDLE,
     Case {
@@ -125,23 +142,66 @@ pub(super) const CASES: &[Case] = &[
         ..THROUGH_CUBE
     },
     LIVER,
+    HELD,
     Case {
-        id: "hand_jump_weighed_alike",
-        what: "the same without the weights of areas, every triangle as stiff as the others: contacts by penalty begin with no force, so that none of them jumps",
-        settings: &[
-            "hands.right.touch={ detect = \"triangles\", stiffness = \"400 N/m\", weigh = \"alike\" }",
-        ],
-        source: "V-43, the first of its ablations: what jumps in the source's mean force times area does not here",
-        ..LIVER
+        id: "hand_jump_held_alike",
+        what: "the same with the plain sum of the forces on held points in the place of the traction over the area in touch: points of a new triangle bring at once what they bear",
+        settings: &[r#"hands.right.touch={ detect = "triangles", response = "imposed", weigh = "alike" }"#],
+        tolerance: Tolerance::Above,
+        source: "V-43, the first of its ablations",
+        mutation: IMPOSED,
+        ..HELD
     },
     Case {
-        id: "hand_jump_in_touch",
-        what: "the same with a threshold of a tenth of a millimetre within which what is touched is held: as without it",
+        id: "hand_jump_held_at_once",
+        what: "the same with displacements that are made at once, in the first step after each look",
         settings: &[
-            "hands.right.touch={ detect = \"triangles\", stiffness = \"400 N/m\", thickness = \"0.1 mm\" }",
+            r#"hands.right.touch={ detect = "triangles", response = "imposed", progressive = false }"#,
         ],
-        source: "V-43, the last of its ablations: hand_jump_liver has no threshold, and nothing is let go, as the penalty never pushes all the way out",
-        ..LIVER
+        tolerance: Tolerance::Above,
+        source: "V-43, the second of its ablations",
+        mutation: IMPOSED,
+        ..HELD
+    },
+    Case {
+        id: "hand_jump_held_at_the_edge",
+        what: "the same with triangles that are moved out of the ball altogether: they come out of touch, are let go of, and spring back",
+        settings: &[r#"hands.right.touch={ detect = "triangles", response = "imposed", residual = 0 }"#],
+        tolerance: Tolerance::Above,
+        source: "V-43, the last of its ablations",
+        mutation: IMPOSED,
+        ..HELD
+    },
+    Case {
+        id: "held_press_depth",
+        capabilities: &["DEB-45"],
+        what: "how deep the slab is in the ball that presses it at 3 mm/s, at most: the residual and what the ball goes in two periods",
+        reading: Reading::last("depth").after(340),
+        reference: 1.6e-4,
+        source: "V-41: what a look finds is moved out until the next, which finds what the ball has gone since",
+        mutation: r#"hands.right.touch={ detect = "triangles", response = "imposed", fraction = 0.1 }"#,
+        ..HELD
+    },
+    Case {
+        id: "held_press_lets_go",
+        capabilities: &["DEB-48"],
+        what: "force of the ball on the slab when it has gone",
+        reading: Reading::component("on_slab", 2),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1e-9),
+        source: "V-44: nothing sticks",
+        mutation: "hands.right.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.0025], [0, 0, -0.0109], [0, 0, -0.0109], [0, 0, -0.0109]]",
+        ..HELD
+    },
+    Case {
+        id: "held_press_does_not_pull",
+        capabilities: &["DEB-48"],
+        what: "the most that the ball pulls the slab up with, as it comes and as it goes: of 0.15 N that it presses with",
+        reading: Reading::component("on_slab", 2).taking(Statistic::Max),
+        reference: 1.5e-3,
+        source: "V-44: at most 1 % of the peak",
+        mutation: "world.gravity=[0, 0, 9.81]",
+        ..HELD
     },
     Case {
         id: "hand_jump_at_once",

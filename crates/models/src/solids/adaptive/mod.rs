@@ -286,6 +286,10 @@ impl Force for AdaptiveForce {
         self.solids[0].name()
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         let [first, second] = self.solids.each_ref().map(|solid| solid.declaration());
         Declaration { internal: first.internal && second.internal, ..first }

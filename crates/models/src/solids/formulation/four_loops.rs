@@ -174,6 +174,10 @@ impl Force for FourLoops {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         let is_objective = self.tetrahedra.iter().all(|tetrahedron| !tetrahedron.cubic.is_empty());
         Declaration { internal: is_objective, ..Declaration::ELASTIC }

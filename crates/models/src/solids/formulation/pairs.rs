@@ -113,6 +113,10 @@ impl Force for PairForce {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         self.declaration
     }

@@ -397,6 +397,10 @@ impl Force for TensorMass {
         &self.name
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn declaration(&self) -> Declaration {
         Declaration { internal: self.is_objective, ..Declaration::ELASTIC }
     }
