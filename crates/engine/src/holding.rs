@@ -199,6 +199,9 @@ impl HeldPoints {
 
     /// Takes the impulses of a rate on the points of a body, which act for `interval` [s].
     pub fn note_rate(&mut self, rate: u32, body: Range<usize>, interval: f64, impulses: &[Vec3]) {
+        if self.points.is_empty() {
+            return;
+        }
         let forces = &mut self.by_rate[rate as usize];
         for (force, point) in forces.iter_mut().zip(&self.points) {
             if body.contains(&(point.row as usize)) {
