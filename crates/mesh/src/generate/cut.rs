@@ -45,9 +45,29 @@ impl Cut {
         default: Some(Value::Text("tet4")),
     };
 
+    /// Of grids of cubes, which know where each cube is.
+    pub(super) const PARAMETER_OF_GRIDS: Parameter = Parameter {
+        summary: "kind of cells; `mixed` has all four kinds, conforming; `tet4_centred` are twelve tetrahedra around the centre of each cube, `tet4_mirrored` six as of `tet4`, in every second cube along each axis mirrored",
+        kind: Kind::Choice(&[
+            "tet4",
+            "hex8",
+            "prism6",
+            "pyramid5",
+            "mixed",
+            "tet10",
+            "hex20",
+            "prism15",
+            "pyramid13",
+            "mixed_quadratic",
+            "tet4_centred",
+            "tet4_mirrored",
+        ]),
+        ..Self::PARAMETER
+    };
+
     pub(super) fn from_values(values: &Values) -> Self {
         match values.text("element") {
-            "tet4" | "tet10" => Self::Tetrahedra,
+            "tet4" | "tet10" | "tet4_mirrored" => Self::Tetrahedra,
             "hex8" | "hex20" => Self::Hexahedra,
             "prism6" | "prism15" => Self::Prisms,
             "pyramid5" | "pyramid13" => Self::Pyramids,
@@ -136,10 +156,17 @@ const KUHN: [([usize; 3], Parity); 6] = [
     ([2, 1, 0], Parity::Odd),
 ];
 
+/// Whether an even or an odd number of mirrors has been at work.
 #[derive(Clone, Copy, PartialEq)]
-enum Parity {
+pub(super) enum Parity {
     Even,
     Odd,
+}
+
+impl Parity {
+    pub(super) fn of(mirrors: usize) -> Self {
+        if mirrors % 2 == 0 { Self::Even } else { Self::Odd }
+    }
 }
 
 /// Corners of a cube in the node order of the hexahedron.
@@ -164,8 +191,9 @@ impl Blocks {
         self.0.entry(kind).or_default().extend_from_slice(nodes);
     }
 
-    /// For each permutation of the axes: from the corner (0,0,0) along the axes in that order to (1,1,1).
-    pub(super) fn kuhn_tetrahedra(&mut self, corners: [u32; 8]) {
+    /// For each permutation of the axes: from the corner (0,0,0) along the axes in that order to (1,1,1), of a cube whose corners
+    /// are numbered in a frame of this parity.
+    pub(super) fn kuhn_tetrahedra(&mut self, corners: [u32; 8], frame: Parity) {
         for (axes, parity) in KUHN {
             let mut at = [0; 3];
             let mut nodes = [corners[0]; 4];
@@ -173,7 +201,7 @@ impl Blocks {
                 at[axis] = 1;
                 nodes[step + 1] = corners[CORNERS.iter().position(|corner| *corner == at).unwrap_or(0)];
             }
-            if parity == Parity::Odd {
+            if parity != frame {
                 nodes.swap(2, 3);
             }
             self.push(ElementKind::Tet4, &nodes);

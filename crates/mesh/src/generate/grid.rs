@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_table::Value;
 
-use super::cut::{BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX, Blocks, CORNERS, Cut};
+use super::cut::{BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX, Blocks, CORNERS, Cut, Parity};
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) struct Grid {
@@ -17,9 +17,21 @@ pub(super) struct Grid {
     zones: Vec<Zone>,
     /// The face of each cube that its prisms lie towards. Corners are numbered as `prisms` has them: towards x both are one.
     prism_end: usize,
+    diagonals: Diagonals,
+}
+
+/// Along which diagonals cubes are cut in tetrahedra.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Diagonals {
+    Parallel,
+    /// In every second cube along each axis the mirror image across that axis: neighbours are each other's mirror images.
+    Mirrored,
 }
 
 impl Grid {
+    const START: Self =
+        Self { cells: [1; 3], zones: Vec::new(), prism_end: BASE_X_MAX, diagonals: Diagonals::Parallel };
+
     /// # Errors
     /// Counts that are not whole numbers of at least one, or too many cells.
     pub(super) fn new(name: &'static str, counts: [f64; 3], cut: Cut) -> Result<Self, MeshError> {
@@ -28,7 +40,7 @@ impl Grid {
             return Err(unfit(name, counts, "at least 4 cubes along x for `mixed`"));
         }
         let zone = |i: usize| if cut == Cut::Mixed { mixed(i, cells[0]) } else { Zone::Uniform(cut) };
-        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), prism_end: BASE_X_MAX })
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), ..Self::START })
     }
 
     /// Cubes cut by the part of the length that their middle is in; `parts` are cuts and where they end, as fractions of
@@ -48,12 +60,17 @@ impl Grid {
             let part = parts.iter().find(|(_, end)| middle < *end).or(parts.last());
             Zone::Uniform(part.map_or(Cut::Hexahedra, |(cut, _)| *cut))
         };
-        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), prism_end: BASE_X_MAX })
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect(), ..Self::START })
     }
 
     /// The same with prisms along another axis of the grid: their triangles lie across it.
     pub(super) fn with_prisms_along(self, axis: usize) -> Self {
         Self { prism_end: [BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX][axis], ..self }
+    }
+
+    /// The same with tetrahedra along these diagonals.
+    pub(super) fn with_diagonals(self, diagonals: Diagonals) -> Self {
+        Self { diagonals, ..self }
     }
 
     pub(super) fn size(&self) -> MeshSize {
@@ -92,13 +109,29 @@ impl Grid {
                         Zone::Uniform(Cut::Prisms) => blocks.prisms_towards(corners, self.prism_end),
                         Zone::Uniform(Cut::Pyramids) => blocks.pyramids(corners, centre(), None),
                         Zone::Uniform(Cut::Centred) => blocks.centred_tetrahedra(corners, centre()),
-                        Zone::Uniform(Cut::Tetrahedra | Cut::Mixed) => blocks.kuhn_tetrahedra(corners),
+                        Zone::Uniform(Cut::Tetrahedra | Cut::Mixed) => {
+                            let (corners, frame) = self.corners_in_frame([i, j, k]);
+                            blocks.kuhn_tetrahedra(corners, frame);
+                        }
                         Zone::Transition => blocks.pyramids(corners, centre(), Some(BASE_X_MAX)),
                     }
                 }
             }
         }
         Mesh { points, blocks: blocks.list(), facet_blocks: Vec::new(), groups: self.sides() }
+    }
+
+    /// Corners of a cube, numbered in the frame in which it is cut in tetrahedra, and the parity of that.
+    fn corners_in_frame(&self, cube: [usize; 3]) -> ([u32; 8], Parity) {
+        let is_mirrored = cube.map(|index| self.diagonals == Diagonals::Mirrored && index % 2 == 1);
+        let corners = CORNERS.map(|corner| {
+            let at = |axis: usize| {
+                let step = if is_mirrored[axis] { 1 - corner[axis] } else { corner[axis] };
+                cube[axis] + step
+            };
+            self.point(at(0), at(1), at(2))
+        });
+        (corners, Parity::of(is_mirrored.into_iter().filter(|mirrored| *mirrored).count()))
     }
 
     fn point(&self, i: usize, j: usize, k: usize) -> u32 {

@@ -409,3 +409,21 @@ fn sheets_and_lines() {
         assert!((mesh.volume() - 5.0).abs() < 1e-14);
     }
 }
+
+/// Cubes are each other's mirror images across the faces that they share: valid, conforming, of the bar's volume, with as many cells and
+/// points as parallel ones, and at the middle of 2 x 2 x 2 cubes all edges meet, where of parallel ones only half do.
+#[test]
+fn mirrored_tetrahedra_conform() {
+    let mut mesh = bar([4.0, 3.0, 2.0], "tet4_mirrored").unwrap();
+    assert_eq!(mesh.validate().unwrap(), crate::Repairs { component_count: 1, ..Default::default() });
+    mesh.faces().conforming().unwrap();
+    mesh.boundary_surface().check_closed().unwrap();
+    assert_eq!((mesh.cell_count(), mesh.points.len()), (144, 60));
+    assert!((mesh.volume() - 0.01).abs() < 1e-15);
+    // the middle point of 27, number 13, is where the diagonals of all eight cubes end, or of two
+    for (element, cells) in [("tet4_mirrored", 48), ("tet4", 24)] {
+        let mesh = bar([2.0, 2.0, 2.0], element).unwrap();
+        let meets = mesh.cells().filter(|cell| cell.nodes.contains(&13)).count();
+        assert_eq!(meets, cells, "{element}");
+    }
+}

@@ -1,5 +1,6 @@
 //! V-01 of the multiresolution specification: a cube glued to a wall by one face, under gravity, in Cauchy's and in
-//! Green–Lagrange's strain, on the meshes `K_S(n)`: six tetrahedra in each of n³ cells, one for each order of the axes.
+//! Green–Lagrange's strain, on the meshes `K_S(n)`: six tetrahedra in each of n³ cells, one for each order of the axes; and on `K_M(n)`, the
+//! same with every second cell along each axis mirrored.
 //!
 //! Cauchy's strain takes the turn at the wall for strain and answers up and down alike; Green–Lagrange's lets the cube arc:
 //! its lower far edge comes nearer to the wall by more than the upper one leaves it.
@@ -64,6 +65,62 @@ macro_rules! rows {
     };
 }
 
+/// Settings for n mirrored cells along each edge and a law.
+macro_rules! mirrored_cube {
+    ($cells:literal, $law:literal) => {
+        &[
+            concat!("bodies.cube.mesh.cells=[", $cells, ", ", $cells, ", ", $cells, "]"),
+            "bodies.cube.mesh.element=\"tet4_mirrored\"",
+            concat!("bodies.cube.material.name=\"", $law, "\""),
+        ]
+    };
+}
+
+/// The three rows of a law and a mirrored mesh.
+macro_rules! mirrored_rows {
+    ($($name:literal $cells:literal $law:literal: $down:literal $top:literal $bottom:literal;)+) => {
+        &[$(
+            Case {
+                id: concat!("wall_cube_", $name, "_down"),
+                what: concat!("the cube at the wall sinks: upper far edge, ", $law, ", K_M(", $cells, ")"),
+                settings: mirrored_cube!($cells, $law),
+                reference: $down,
+                ..MIRRORED_DOWN
+            },
+            Case {
+                id: concat!("wall_cube_", $name, "_top"),
+                what: concat!("the same edge, away from the wall, ", $law, ", K_M(", $cells, ")"),
+                settings: mirrored_cube!($cells, $law),
+                reference: $top,
+                ..MIRRORED_TOP
+            },
+            Case {
+                id: concat!("wall_cube_", $name, "_bottom"),
+                what: concat!("the lower far edge, away from the wall, ", $law, ", K_M(", $cells, ")"),
+                settings: mirrored_cube!($cells, $law),
+                reference: $bottom,
+                ..MIRRORED_BOTTOM
+            },
+        )+]
+    };
+}
+
+/// Unmirrored the same cells are stiffer, by more than the rows allow.
+const UNMIRRORED: &str = "bodies.cube.mesh.element=\"tet4\"";
+const MIRRORED_DOWN: Case = Case { mutation: UNMIRRORED, ..DOWN };
+const MIRRORED_TOP: Case = Case { mutation: UNMIRRORED, ..TOP };
+const MIRRORED_BOTTOM: Case = Case { mutation: UNMIRRORED, ..BOTTOM };
+
+/// The other half of V-01's table.
+pub(super) const MIRRORED: &[Case] = mirrored_rows! {
+    "cauchy_mirrored_2" "2" "linear": -0.01107 0.00302 -0.00302;
+    "cauchy_mirrored_4" "4" "linear": -0.01325 0.00414 -0.00414;
+    "cauchy_mirrored_8" "8" "linear": -0.01437 0.00464 -0.00464;
+    "green_mirrored_2" "2" "st_venant_kirchhoff": -0.01118 0.00236 -0.00368;
+    "green_mirrored_4" "4" "st_venant_kirchhoff": -0.01343 0.00320 -0.00512;
+    "green_mirrored_8" "8" "st_venant_kirchhoff": -0.01463 0.00354 -0.00582;
+};
+
 pub(super) const CASES: &[Case] = rows! {
     "cauchy_2" "2" "linear": -0.01005 0.00220 -0.00258;
     "cauchy_4" "4" "linear": -0.01232 0.00355 -0.00372;
@@ -93,6 +150,69 @@ pub(super) const SHEARED: &[Case] = &[
         source: "specification, V-01 and V-18",
         ..DOWN
     },
+    Case {
+        id: "wall_cube_hybrid_2_down",
+        what: "the same, K_S(2)",
+        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
+        reference: -0.00721,
+        ..SHEAR_DOWN
+    },
+    Case {
+        id: "wall_cube_hybrid_2_top",
+        what: "the same edge, away from the wall: hardly, K_S(2)",
+        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
+        reference: 0.00002,
+        ..SHEAR_TOP
+    },
+    Case {
+        id: "wall_cube_hybrid_2_bottom",
+        what: "the lower far edge, away from the wall, K_S(2)",
+        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
+        reference: 0.00013,
+        ..SHEAR_BOTTOM
+    },
+    Case {
+        id: "wall_cube_hybrid_mirrored_4_down",
+        what: "the upper far edge by the hybrid operator, K_M(4)",
+        settings: &[
+            "bodies.cube.material.name=\"linear\"",
+            HYBRID,
+            "bodies.cube.mesh.element=\"tet4_mirrored\"",
+        ],
+        reference: -0.00703,
+        ..SHEAR_DOWN
+    },
+    Case {
+        id: "wall_cube_hybrid_mirrored_4_top",
+        what: "the same edge, away from the wall, K_M(4)",
+        settings: &[
+            "bodies.cube.material.name=\"linear\"",
+            HYBRID,
+            "bodies.cube.mesh.element=\"tet4_mirrored\"",
+        ],
+        reference: -0.00005,
+        ..SHEAR_TOP
+    },
+    Case {
+        id: "wall_cube_hybrid_mirrored_4_bottom",
+        what: "the lower far edge, away from the wall, K_M(4)",
+        settings: &[
+            "bodies.cube.material.name=\"linear\"",
+            HYBRID,
+            "bodies.cube.mesh.element=\"tet4_mirrored\"",
+        ],
+        reference: 0.00005,
+        ..SHEAR_BOTTOM
+    },
 ];
+
+const SHEAR_DOWN: Case = Case { capabilities: &["DEB-23"], source: "specification, V-01 and V-18", ..DOWN };
+/// By Cauchy's strain the edges move along the wall's normal by a millimetre and more.
+const SHEAR_TOP: Case = Case {
+    reading: Reading::component("top", 0),
+    mutation: r#"bodies.cube.formulation={ name = "edge_tensors" }"#,
+    ..SHEAR_DOWN
+};
+const SHEAR_BOTTOM: Case = Case { reading: Reading::component("bottom", 0), ..SHEAR_TOP };
 
 const HYBRID: &str = r#"bodies.cube.formulation={ name = "hybrid" }"#;
