@@ -100,6 +100,8 @@ pub struct StageTimes {
     pub solve: f64,
     /// The rest of a step: positions and velocities moved on, energies of the line search, internal variables.
     pub advance: f64,
+    /// Fields of the world, as skins and the dresses of bodies with levels.
+    pub fields: f64,
     /// Of `solve`: products with the tangent where no matrix is stored.
     pub products: f64,
 }
@@ -115,6 +117,7 @@ impl std::ops::Sub for StageTimes {
             assembly: self.assembly - earlier.assembly,
             solve: self.solve - earlier.solve,
             advance: self.advance - earlier.advance,
+            fields: self.fields - earlier.fields,
             products: self.products - earlier.products,
         }
     }
@@ -122,7 +125,7 @@ impl std::ops::Sub for StageTimes {
 
 impl StageTimes {
     pub fn total(&self) -> f64 {
-        self.pairs + self.forces + self.assembly + self.solve + self.advance
+        self.pairs + self.forces + self.assembly + self.solve + self.advance + self.fields
     }
 
     /// What derivatives of forces took: matrices, and products where none is stored.

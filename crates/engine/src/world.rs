@@ -107,6 +107,8 @@ pub struct Workspace {
     pub systems: Vec<SystemWorkspace>,
     /// One for each field.
     field_scratches: Vec<Scratch>,
+    /// What their steps have taken [s].
+    field_seconds: f64,
     /// The next State, swapped in when a step is complete.
     next: State,
     /// For each coupling the number of its force in the faster system.
@@ -164,7 +166,8 @@ impl Model {
         let fast_ends = self.couplings.iter().map(fast_end).collect();
         let field_scratches = self.fields.iter().map(|field| field.new_scratch()).collect();
         let (next, interruption) = (state.clone(), Interruption::default());
-        let workspace = Workspace { systems, field_scratches, next, fast_ends, interruption };
+        let workspace =
+            Workspace { systems, field_scratches, field_seconds: 0.0, next, fast_ends, interruption };
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
@@ -247,9 +250,10 @@ impl World {
         &self.last_report
     }
 
-    /// Wall time by stage, summed over systems.
+    /// Wall time by stage, summed over systems and fields.
     pub fn stages(&self) -> StageTimes {
-        self.workspace.systems.iter().fold(StageTimes::default(), |mut sum, ws| {
+        let start = StageTimes { fields: self.workspace.field_seconds, ..StageTimes::default() };
+        self.workspace.systems.iter().fold(start, |mut sum, ws| {
             sum.pairs += ws.stages.pairs;
             sum.forces += ws.stages.forces;
             sum.assembly += ws.stages.assembly;
@@ -344,6 +348,7 @@ impl World {
         for (own, before) in self.workspace.systems.iter_mut().zip(&other.workspace.systems) {
             own.stages = before.stages;
         }
+        self.workspace.field_seconds = other.workspace.field_seconds;
     }
 
     /// Continues from another state of the same model.
@@ -550,6 +555,10 @@ impl World {
     }
 
     fn step_fields(&mut self, start: f64, next: &mut State) -> Result<(), WorldError> {
+        if self.model.fields.is_empty() {
+            return Ok(());
+        }
+        let clock = Instant::now();
         let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
         let scratches = &mut self.workspace.field_scratches;
         for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
@@ -561,6 +570,7 @@ impl World {
                 error,
             })?;
         }
+        self.workspace.field_seconds += clock.elapsed().as_secs_f64();
         Ok(())
     }
 

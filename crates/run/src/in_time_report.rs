@@ -99,6 +99,7 @@ impl InTime {
                     "forces": stages.forces / computing,
                     "solve": (stages.assembly + stages.solve) / computing,
                     "advance": stages.advance / computing,
+                    "fields": stages.fields / computing,
                     "rest": 1.0 - stages.total() / computing,
                 },
                 "budgets_set": world.budgets,

@@ -101,7 +101,7 @@ impl Report {
         let probes: serde_json::Map<String, Value> = self.probes.iter().map(probe_to_json).collect();
         let hashes: Vec<Value> =
             self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
-        let StageTimes { pairs, forces, assembly, solve, advance, .. } = self.stages;
+        let StageTimes { pairs, forces, assembly, solve, advance, fields, .. } = self.stages;
         json!({
             "version": env!("CARGO_PKG_VERSION"),
             "schema": SCHEMA,
@@ -130,6 +130,7 @@ impl Report {
                 "assembly": 1e3 * assembly,
                 "solve": 1e3 * solve,
                 "advance": 1e3 * advance,
+                "fields": 1e3 * fields,
                 "measure": 1e3 * self.around.measure,
                 "write": 1e3 * self.around.write,
             },

@@ -123,12 +123,13 @@ fn print_summary(report: &Value) {
     ));
     let share = |of: &str| 100.0 * number(&format!("/world/shares/{of}"));
     print_line(format_args!(
-        "clock less world {:.2} ms at the end; of the time of computing {:.0} % pairs, {:.0} % forces, {:.0} % equations, {:.0} % advance, {:.0} % the rest",
+        "clock less world {:.2} ms at the end; of the time of computing {:.0} % pairs, {:.0} % forces, {:.0} % equations, {:.0} % advance, {:.0} % fields, {:.0} % the rest",
         1e3 * number("/world/drift_seconds"),
         share("pairs"),
         share("forces"),
         share("solve"),
         share("advance"),
+        share("fields"),
         share("rest"),
     ));
     for (name, hand) in report["hands"].as_object().into_iter().flatten() {
