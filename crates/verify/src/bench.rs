@@ -209,6 +209,16 @@ pub const BENCHES: &[Bench] = &[
         run: levels::octree_rod,
     },
     Bench {
+        name: "octree_in_time",
+        what: "the liver of particles, the finest everywhere, one thread: time of computing over the time of the world (V-08)",
+        run: levels::octree_in_time,
+    },
+    Bench {
+        name: "dress_share",
+        what: "what the surface that is shown of the poked organ takes of a period (V-40)",
+        run: levels::dress_share,
+    },
+    Bench {
         name: "tool_detection_10k",
         what: "one search for what a tool touches, among ten thousand triangles that move [ms]",
         run: tools::detection,
@@ -297,6 +307,11 @@ pub const BENCHES: &[Bench] = &[
         name: "tet4_forces",
         what: "forces alone of tetrahedra, St. Venant-Kirchhoff, bent [elements/s], and a derivative product [x force]",
         run: |effort| laws::forces("tet4_forces", "tet4", 12, laws::Wanted::Steps, effort),
+    },
+    Bench {
+        name: "green_over_cauchy",
+        what: "forces of tetrahedra by Green and Lagrange's strain over those by Cauchy's, one thread [x Cauchy] (V-01)",
+        run: |effort| laws::green_over_cauchy("green_over_cauchy", effort),
     },
     Bench {
         name: "hex8_forces",

@@ -464,6 +464,26 @@ pub fn forces(
     Ok(figures)
 }
 
+/// Time of the forces of tetrahedra by Green and Lagrange's strain over that by Cauchy's, one thread (V-01, V-28).
+pub fn green_over_cauchy(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let times = |law: &str| {
+        let sampling = Sampling { threads: 1, samples: effort.choose(7, 41), in_a_row: 5, beside: None };
+        force_times(&bar("tet4", 12, law), sampling)
+    };
+    let (green, cauchy) = (times("st_venant_kirchhoff")?, times("linear")?);
+    let held = Held {
+        error: green.derivative_error,
+        error_of: "derivative against differences of the force".to_owned(),
+        baseline: Some(GREEN_OVER_CAUCHY),
+    };
+    let ratios = green.force.seconds.iter().zip(&cauchy.force.seconds).map(|(green, cauchy)| green / cauchy);
+    let figure = green.force.figure(name, ratios.collect(), &held, ("x Cauchy", false));
+    Ok(vec![Figure { by_processor: over(&green.force.processor, &cauchy.force.processor), ..figure }])
+}
+
+/// What the source has of its own programs (V-01).
+const GREEN_OVER_CAUCHY: f64 = 2.3;
+
 /// How much faster a derivative that is computed once a step must be than one computed at every product (EXP-41).
 const STORED_OVER_PRODUCTS: f64 = 2.0;
 

@@ -1,9 +1,10 @@
-//! What levels save: active points of a pressed body, adaptive and all fine, with the errors of force and surface.
+//! What levels save: active points of a pressed body, adaptive and all fine, with the errors of force and surface. What they and the surface that
+//! is shown take of the time that passes.
 
 use souple_engine::World;
 use souple_scene::Measurement;
 
-use super::timing::{self, Timed, Timing, as_it_is, scene, with_threads};
+use super::timing::{self, Clock, Timed, Timing, as_it_is, scene, with_threads};
 use super::{Effort, Figure, value_of};
 use crate::cases::STRUCK_ROD;
 
@@ -171,4 +172,61 @@ pub fn octree_rod(effort: Effort) -> Result<Vec<Figure>, String> {
         // as fast as the coarse level but for two fifths
         adaptive.times_as_fast("octree_rod_coarse", coarse, &held(1.0 / 1.4)),
     ])
+}
+
+/// The organ of particles with the finest everywhere (V-08): time of computing over the time of the world, on one thread; the share of time above one
+/// beside it.
+pub fn octree_in_time(effort: Effort) -> Result<Vec<Figure>, String> {
+    let scene = scene("octree_liver", &[r#"bodies.liver.octree.fixed="2""#.to_owned()])?;
+    let mut world: World = scene.model.start(scene.state);
+    let periods = effort.choose(20, 200);
+    with_threads(1, || {
+        let (mut seconds, mut processor) = (Vec::new(), Vec::new());
+        let period = world.model().period;
+        for _ in 0..periods {
+            let clock = Clock::start();
+            world.step().map_err(|error| error.to_string())?;
+            clock.stop(&mut seconds, &mut processor, 1);
+        }
+        let load = |samples: &[f64]| samples.iter().sum::<f64>() / (samples.len() as f64 * period);
+        let late = seconds.iter().filter(|taken| **taken > period).count();
+        Ok(vec![Figure {
+            name: "octree_in_time".to_owned(),
+            value: load(&seconds),
+            by_processor: (!processor.is_empty()).then(|| load(&processor)),
+            unit: "time of computing / time of the world",
+            higher_is_better: false,
+            error: late as f64 / seconds.len() as f64,
+            error_of: "share of its periods that took longer than they are".to_owned(),
+            baseline: Some(1.0),
+            threads: 1,
+            samples: seconds.len(),
+            spread: 0.0,
+            bytes: world.bytes(),
+        }])
+    })?
+}
+
+/// The share of a period that the dress of the organ takes while it is poked (V-40).
+pub fn dress_share(effort: Effort) -> Result<Vec<Figure>, String> {
+    let scene = scene("surgical", &[])?;
+    let mut world: World = scene.model.start(scene.state);
+    let periods = effort.choose(20, 130);
+    for _ in 0..periods {
+        world.step().map_err(|error| error.to_string())?;
+    }
+    Ok(vec![Figure {
+        name: "dress_share".to_owned(),
+        value: world.stages().fields / world.time(),
+        by_processor: None,
+        unit: "time of the surface / time of the world",
+        higher_is_better: false,
+        error: 0.0,
+        error_of: String::new(),
+        baseline: Some(0.1),
+        threads: rayon::current_num_threads(),
+        samples: periods,
+        spread: 0.0,
+        bytes: world.bytes(),
+    }])
 }
