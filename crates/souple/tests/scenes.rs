@@ -11,6 +11,7 @@ const WARNS: &[(&str, &str)] = &[
     ("half_turn_two_meshes", "32 quadrilateral faces"),
     ("mixed_beam", "32 quadrilateral faces"),
     ("octree_rod", "nearly incompressible"),
+    ("octree_rods", "nearly incompressible"),
     ("rubber_as_text", "inverted elements have no energy"),
     ("tissues", "inverted elements have no energy"),
     ("tissues", "the stiffness at rest jumps"),

@@ -54,6 +54,8 @@ pub enum Statistic {
     Max,
     /// The greatest less the least.
     Span,
+    /// The same from so many world periods on, of the course in `probes.csv`.
+    LateSpan(u64),
     /// The strongest frequency [Hz].
     Frequency,
 }
@@ -218,6 +220,12 @@ impl Statistic {
             Self::Min => of(&summary.min),
             Self::Max => of(&summary.max),
             Self::Span => Some(of(&summary.max)? - of(&summary.min)?),
+            Self::LateSpan(from) => {
+                let late = (from as usize..trace.times.len()).map(|step| of(trace.value(step)?));
+                let late: Vec<f64> = late.collect::<Option<_>>()?;
+                let greatest = late.iter().copied().reduce(f64::max)?;
+                Some(greatest - late.iter().copied().reduce(f64::min)?)
+            }
             Self::Frequency => summary.frequency.get(component).copied().flatten(),
         }
     }

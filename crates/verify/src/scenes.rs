@@ -81,6 +81,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("octree_liver", include_str!("../../../scenes/octree_liver/scene.toml")),
     ("octree_cube", include_str!("../../../scenes/octree_cube/scene.toml")),
     ("octree_rod", include_str!("../../../scenes/octree_rod/scene.toml")),
+    ("octree_rods", include_str!("../../../scenes/octree_rods/scene.toml")),
     ("particles_cube", include_str!("../../../scenes/particles_cube/scene.toml")),
     ("patch", include_str!("../../../scenes/patch/scene.toml")),
     ("plastic_bar", include_str!("../../../scenes/plastic_bar/scene.toml")),
