@@ -83,6 +83,16 @@ const CUBE_SWING: Case = Case {
     ..BLOCK
 };
 
+/// `x' = 2 x - x₋₁ - z² x` from 0 and with `h v₀` a step before, 120 times.
+const PLACE: Case = Case {
+    reading: Reading::component("place", 0),
+    reference: 0.075_750_517_514_506_37,
+    // 120 steps, each with rounding of 8 cm, and of four terms
+    tolerance: Tolerance::Relative(1e-12),
+    source: "V-34: modified Euler and Störmer are one recurrence, here in forty digits",
+    ..BLOCK
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "energy_explicit_euler",
@@ -249,5 +259,36 @@ pub(super) const CASES: &[Case] = &[
         source: "Hairer, Lubich & Wanner 2006, IV.1: quadratic invariants of symplectic methods",
         mutation: r#"systems.main.stepper="rk4""#,
         ..CUBE_SWING
+    },
+    Case {
+        id: "place_modified_euler",
+        capabilities: &["DEB-34"],
+        what: "place of the block after 120 steps of modified Euler",
+        settings: &[SYMPLECTIC_EULER],
+        ..PLACE
+    },
+    Case {
+        id: "place_stoermer",
+        capabilities: &["DEB-34"],
+        what: "the same by Störmer's two places: the same to rounding",
+        settings: &[r#"systems.main.stepper="t_simulation""#],
+        ..PLACE
+    },
+    Case {
+        id: "newton_cotes_runs_away",
+        capabilities: &["DEB-34"],
+        what: "how far the corner of a cube at a wall swings within half a second under Newton and Cotes, in steps in which modified Euler lets it swing by 2 cm: by more than the cube is long",
+        scene: "swinging_cube",
+        settings: &[
+            NEWTON_COTES,
+            r#"bodies.cube.formulation={ name = "edge_tensors" }"#,
+            "bodies.cube.material.youngs_modulus=19185.185185185186",
+        ],
+        reading: Reading::component("corner", 2).taking(Statistic::Span).after(50),
+        reference: 0.1,
+        tolerance: Tolerance::Above,
+        source: "V-34: diverges at the step used for modified Euler",
+        mutation: r#"systems.main.stepper="symplectic_euler""#,
+        ..BLOCK
     },
 ];

@@ -1,6 +1,6 @@
 //! An emulated hand on a cube of gel: what it feels, and what it must not feel.
 
-use crate::{Case, Reading, Tolerance};
+use crate::{Case, Reading, Statistic, Tolerance};
 
 const HAND: Case = Case {
     id: "",
@@ -114,6 +114,16 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(0.02),
         source: "the ball is drawn to the hand again",
         mutation: r#"hands.right.motion.formula=[0, 0, "-0.025 * smoothstep(0.1, 0.5, t)"]"#,
+        ..HAND
+    },
+    Case {
+        id: "hand_never_sticks",
+        capabilities: &["DEB-48"],
+        what: "force of the ball on the cube along the way out, the most at any date: it never pulls",
+        reading: Reading::component("on_cube", 2).taking(Statistic::Max),
+        source: "specification, V-44: a contact only pushes",
+        // from below, where pushing is upward
+        mutation: r#"hands.right.tool={ name = "sphere", centre = [0.05, 0.05, -0.02], radius = 0.03 }"#,
         ..HAND
     },
 ];

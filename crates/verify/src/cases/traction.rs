@@ -36,6 +36,34 @@ const KEPT: Case = Case {
     ..SIDE
 };
 
+/// A pad of which the middle of the top is led down by a fifth: how far a place beside that is pushed away.
+const PAD: Case = Case {
+    capabilities: &["DEB-49"],
+    scene: "pressed_pad",
+    reading: Reading::component("beside", 0),
+    // Newton's method stops at 1e-10 of the greatest force; of displacements up to 12 cm
+    tolerance: Tolerance::Absolute(1e-9),
+    source: "V-37: bulges more with λ; K u = f of the same hexahedra by an independent program",
+    mutation: "bodies.pad.material.poissons_ratio=0.3",
+    ..PULL
+};
+
+/// The pad at rest under Hooke's law alone, with this Young's modulus and Poisson's ratio.
+macro_rules! pad {
+    ($youngs_modulus:literal, $poissons_ratio:literal) => {
+        &[
+            "bodies.pad.adapt=",
+            "probes.second_law=",
+            "bodies.pad.damping=",
+            r#"systems.main.stepper={ name = "static", newton_tolerance = 1e-10, solver_tolerance = 1e-11 }"#,
+            "world.period=\"0.5 s\"",
+            "run.duration=\"0.5 s\"",
+            concat!("bodies.pad.material.youngs_modulus=", $youngs_modulus),
+            concat!("bodies.pad.material.poissons_ratio=", $poissons_ratio),
+        ]
+    };
+}
+
 const ST_VENANT_KIRCHHOFF: &[&str] = &[r#"bodies.bar.material.name="st_venant_kirchhoff""#];
 
 pub(super) const CASES: &[Case] = &[
@@ -129,5 +157,26 @@ pub(super) const CASES: &[Case] = &[
         // 0.2 m (√(1 - 2 ν E) - 1) with the strain E = e + e²/2
         reference: -0.002_060_615_338_937_665_7,
         ..SIDE
+    },
+    Case {
+        id: "pad_bulges_lambda_0",
+        what: "how far a place of a pad beside a press moves away from it, λ = 0, μ = 7 kPa: it is drawn in",
+        settings: pad!("14000", "0"),
+        reference: -1.818_167_270e-2,
+        ..PAD
+    },
+    Case {
+        id: "pad_bulges_lambda_50k",
+        what: "the same, λ = 50 kPa: it is pushed away",
+        settings: pad!("20140.350877192983", "0.43859649122807015"),
+        reference: 2.979_419_706e-3,
+        ..PAD
+    },
+    Case {
+        id: "pad_bulges_lambda_500k",
+        what: "the same, λ = 500 kPa: by four times as much",
+        settings: pad!("20903.353057199211", "0.49309664694280081"),
+        reference: 1.373_995_628e-2,
+        ..PAD
     },
 ];
