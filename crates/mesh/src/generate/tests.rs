@@ -411,7 +411,7 @@ fn sheets_and_lines() {
 }
 
 /// Cubes are each other's mirror images across the faces that they share: valid, conforming, of the bar's volume, with as many cells and
-/// points as parallel ones, and at the middle of 2 x 2 x 2 cubes all edges meet, where of parallel ones only half do.
+/// points as parallel ones. In the middle of 2 x 2 x 2 cubes all cells meet, of parallel ones half.
 #[test]
 fn mirrored_tetrahedra_conform() {
     let mut mesh = bar([4.0, 3.0, 2.0], "tet4_mirrored").unwrap();
