@@ -452,4 +452,18 @@ pub(super) const CASES: &[Case] = &[
         mutation: "bodies.cube.damping.neighbour_friction=0.01",
         ..SWING
     },
+    Case {
+        id: "octree_liver_is_whole_again",
+        capabilities: &["DEB-14", "DEB-18"],
+        what: "how far the place that the tool pushed in by 18 mm is from where it was, two seconds after the tool has gone",
+        scene: "octree_liver",
+        reading: Reading::last("dent").after(310),
+        reference: 0.0,
+        // less than 1 % of the size of an organ of two decimetres
+        tolerance: Tolerance::Absolute(1e-3),
+        source: "specification, V-06: less than 1 % of the size within 2 s of the release",
+        // the tool stays
+        mutation: "shapes.tool.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.05], [0, 0, -0.05], [0, 0, -0.05]]",
+        ..SWING
+    },
 ];
