@@ -362,6 +362,21 @@ fn faults_in_texts_point_at_their_characters() {
         let from: String = line.chars().skip(error.column - 1).collect();
         assert!(from.starts_with(read), "`{read}`: {errors}");
     }
+    // a parameter of a law whose unit is not the one that its place asks for
+    for text in [
+        link(
+            "{ name = \"rheological\", network = \"spring(k) - damper(2)\", parameters = { k = \"3 kg\" } }",
+        ),
+        conditional("a = 'CHK, k; SUP, L, 1 -> b'", "parameters = { k = \"3 kg\" }"),
+    ] {
+        let errors = read_text("scene.toml", &text, Path::new("."), &[]).err().expect("no stiffness");
+        let Some(error) = errors.0.iter().find(|error| error.path.ends_with("law.parameters.k")) else {
+            panic!("not told at the parameter: {errors}")
+        };
+        let line = text.lines().nth(error.line - 1).unwrap_or_default();
+        let from: String = line.chars().skip(error.column - 1).collect();
+        assert!(from.trim_start_matches('"').starts_with("3 kg"), "{errors}");
+    }
     // every fault of a law at once
     let both = law("\"mu*dot(E, E)\"").replace("{ mu = \"1 MPa\" }", "{ mu = \"1 MPq\", k = \"3 kPz\" }");
     let errors = read_text("scene.toml", &both, Path::new("."), &[]).err().expect("no such units");

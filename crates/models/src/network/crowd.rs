@@ -281,14 +281,16 @@ impl Crowd {
         Some(Act { axial: u * push, across, energy, memory: next })
     }
 
-    /// What a bond gives off that was in range a step before: all that it stored.
+    /// What a bond gives off that is out of range and was in it a step before: all that it stored.
     fn tear(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
         let bond_at = HOOK + self.0.law.memory_len();
         let fusible = self.0.fusible.as_ref()?;
-        if memory[bond_at] == MOLTEN || standing.reach.before >= self.0.range {
+        if memory[bond_at] == MOLTEN {
             return None;
         }
-        let still = Reach { length: standing.reach.before, ..standing.reach };
+        // velocities of some steppers are not those that led here
+        let length = standing.reach.before.min(self.0.range);
+        let still = Reach { length, before: length, ..standing.reach };
         let before = Standing { reach: still, ..*standing };
         let heat = self.bond(fusible, &before, memory, at).stored;
         let mut next = *memory;
@@ -636,6 +638,14 @@ impl Force for Crowd {
         found.reserve(chunks.iter().map(Vec::len).sum());
         let begins = law.memory_len() > 0;
         let mut memory = [0.0; 8];
+        // bonds that tear in this step, for what they give off; they have melted in the next
+        if self.0.fusible.is_some() {
+            let bond_at = HOOK + law.memory_len();
+            let is_far = |pair: &&Pair| {
+                (at.positions[pair.a as usize] - at.positions[pair.b as usize]).length_sq() >= range * range
+            };
+            found.extend(at.pairs.iter().filter(|pair| pair.memory[bond_at] != MOLTEN).filter(is_far));
+        }
         for [a, b] in chunks.iter().flatten() {
             if begins {
                 let length = (at.positions[*b as usize] - at.positions[*a as usize]).length();

@@ -2,9 +2,10 @@
 //!
 //! First a sheet of balls that touch the surface from within: places on the surface moved inward by a radius, taken in an
 //! order that goes on from what stands, so that balls lie close. Then a close packing inside, which keeps clear of the sheet.
-//! No two are closer than a diameter. What gaps are left between sheet and packing, matter closes by itself when it settles.
+//! No two are closer than a diameter, but where gaps of the sheet are closed. What gaps are left between sheet and packing, matter closes
+//! by itself when it settles.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -23,6 +24,16 @@ const FINEST: f64 = 1.0 / 256.0;
 const LEAST_GAIN: f64 = 1e-2;
 /// Of a search: it may creep along a ridge no longer.
 const MOST_MOVES: usize = 256;
+/// Onto the sheet below an edge, where every move is half as long as the one before if it is as sharp as 60°.
+const MOVES_IN: usize = 32;
+/// Of a diameter: what is less deep by so much is on the sheet.
+const ON_SHEET: f64 = 1e-6;
+/// Of a diameter: a ball that is put below a place is so near to it at most. In edges sharper than `2 asin(1/(2 · 0.95))` none is, 63.5°.
+const OF_USE: f64 = 0.95;
+/// How often balls are put into gaps and spread.
+const ROUNDS: usize = 4;
+/// In which every ball that overlaps may move once.
+const SWEEPS: usize = 64;
 /// Diameters about a place within which the nearest ball is looked for.
 const FAR: i64 = 4;
 /// Of a diameter: balls of a close packing are that far apart, but for rounding.
@@ -48,7 +59,7 @@ pub enum Gaps {
     /// They may be up to `√5 - 1` radii from the nearest ball.
     #[default]
     Left,
-    /// Those that are farther than a radius get a ball below the sheet.
+    /// None is farther than a radius, where balls have room below it: they may overlap for that.
     Closed,
 }
 
@@ -100,14 +111,23 @@ impl Filling {
     /// The place of the surface that is farthest from all balls, of places a quarter of a diameter apart and from the widest of them on
     /// uphill; `None` where no surface is within the bounds.
     pub fn widest_gap(&self, shape: &dyn Shape, places: &[Vec3]) -> Option<Gap> {
-        let pitch = SHEET_PITCH * self.spacing;
-        let surface = Self { inset: 0.0, ..*self };
+        self.widest_gap_of(shape, &self.surface_places(shape), places)
+    }
+
+    /// Places of the surface, a quarter of a diameter apart.
+    pub fn surface_places(&self, shape: &dyn Shape) -> Vec<Vec3> {
+        Self { inset: 0.0, ..*self }.candidates(shape, SHEET_PITCH * self.spacing)
+    }
+
+    /// The widest gap where the places of the surface are known.
+    pub fn widest_gap_of(&self, shape: &dyn Shape, surface: &[Vec3], places: &[Vec3]) -> Option<Gap> {
         let mut balls = Balls::new(self.spacing);
         places.iter().for_each(|place| balls.put(*place));
-        let candidates = surface.candidates(shape, pitch).into_iter();
-        let (_, seed) =
-            candidates.map(|place| (balls.clearance(place), place)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (apart, place) = surface.widest_near(shape, seed, pitch, |place| balls.clearance(place));
+        let seeds = surface.iter().map(|place| (balls.clearance(*place), *place));
+        let (_, seed) = seeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let on_surface = Self { inset: 0.0, ..*self };
+        let pitch = SHEET_PITCH * self.spacing;
+        let (apart, place) = on_surface.widest_near(shape, seed, pitch, |place| balls.clearance(place));
         Some(Gap { place, width: apart - 0.5 * self.spacing })
     }
 
@@ -144,45 +164,163 @@ impl Filling {
         balls
     }
 
-    /// Puts a ball below the sheet wherever a place of the surface is farther than a radius `R` from all balls. Above a place of the sheet
-    /// that is `a R` from the nearest of its balls the surface is `√(1 + a²) - 1` radii from it; a ball that touches those around the place is
-    /// `√(4 - a²)` radii from the surface. Both are 1 at `a = √3`: the one or the other is never more.
+    /// Puts balls at the depth of the inset below whatever places of the surface are farther than a radius from all balls, and lets those that
+    /// overlap then spread, till no place is. Above a place of a flat sheet that is `a R` from the nearest of its balls the surface is
+    /// `√(1 + a²) - 1` radii from it: what is put there is `√3 R` from others at least, before it spreads.
     fn close_gaps(&self, shape: &dyn Shape, pitch: f64, balls: &mut Balls) {
-        let widest = 0.75_f64.sqrt() * self.spacing;
-        let mut seeds: Vec<(f64, Vec3)> = self
-            .candidates(shape, pitch)
-            .into_iter()
-            .map(|place| (balls.distance(place), place))
-            // a candidate is within a pitch of what is widest
-            .filter(|(apart, _)| *apart > widest - pitch)
+        // deeper than they reach
+        if self.inset > OF_USE * self.spacing {
+            return;
+        }
+        let mut places = Places::new(self.spacing);
+        self.surface_places(shape).into_iter().for_each(|place| places.put(place));
+        // places of the surface near what has changed
+        let mut changed = None;
+        for _ in 0..ROUNDS {
+            let first = balls.places.len();
+            self.cover(shape, pitch, &places.places, changed.as_ref(), balls);
+            if balls.places.len() == first {
+                return;
+            }
+            changed = Some(self.spread(shape, pitch, &places, first, balls));
+        }
+        self.cover(shape, pitch, &places.places, changed.as_ref(), balls);
+    }
+
+    /// A ball below every place of the surface that is farther than a radius from all balls, the widest first; below those alone that are
+    /// two diameters at most from balls that have changed, where these are given.
+    fn cover(
+        &self,
+        shape: &dyn Shape,
+        pitch: f64,
+        places: &[Vec3],
+        changed: Option<&Balls>,
+        balls: &mut Balls,
+    ) {
+        let surface = Self { inset: 0.0, ..*self };
+        let is_near = |place: &&Vec3| {
+            let mut is_near = changed.is_none();
+            if let Some(changed) = changed {
+                changed.visit(**place, 1, |_, _| is_near = true);
+            }
+            is_near
+        };
+        let mut seeds: Vec<(f64, Vec3)> = places
+            .iter()
+            .filter(is_near)
+            .map(|place| (balls.room(*place), *place))
+            // the widest is within a pitch of one that was looked at
+            .filter(|(apart, _)| *apart > self.spacing - pitch)
             .collect();
         seeds.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // where the search has ended before: those that begin beside it would end there too
-        let (mut ends, mut known) = (Vec::<Vec3>::new(), Cells::new(self.spacing));
+        // where no ball came, or none was missing: those that begin beside it would end there too
+        let mut ends = Places::new(self.spacing);
         for (_, seed) in seeds {
-            let mut is_known = balls.distance(seed) <= widest - pitch;
-            known.visit(seed, 1, |end| is_known |= (ends[end as usize] - seed).length() < pitch);
-            if is_known {
-                continue;
-            }
-            let (apart, place) = self.widest_near(shape, seed, pitch, |place| balls.distance(place));
-            known.add(place, ends.len() as u32);
-            ends.push(place);
-            if apart <= widest {
-                continue;
-            }
-            let Some(nearest) = shape.nearest(place, f64::INFINITY) else { continue };
-            // the first that has room, on the way in
-            let steps = (1.0 / FINEST).ceil() as usize;
-            for step in 0..=steps {
-                let deep = place - nearest.normal * (step as f64 * FINEST * self.spacing);
-                let BoundingBox { low, high } = self.bounds;
-                let is_in = deep == deep.max_components(low).min_components(high);
-                if !is_in || !self.is_inside(shape, deep, -1e-6 * self.spacing) || balls.add(deep) {
-                    break;
+            let mut is_known = balls.room(seed) <= self.spacing - pitch;
+            ends.visit(seed, 1, |_, end| is_known |= (end - seed).length() < pitch);
+            while !is_known {
+                let (apart, place) = surface.widest_near(shape, seed, pitch, |place| balls.room(place));
+                let ball = (apart > self.spacing).then(|| self.below(shape, place)).flatten();
+                match ball {
+                    Some(ball) if (ball - place).length() <= OF_USE * self.spacing => balls.put(ball),
+                    _ => {
+                        ends.put(place);
+                        break;
+                    }
                 }
             }
         }
+    }
+
+    /// Where balls are put below a place of the surface; `None` where it is too thin for them, or too sharp.
+    fn below(&self, shape: &dyn Shape, place: Vec3) -> Option<Vec3> {
+        let BoundingBox { low, high } = self.bounds;
+        let mut ball = place;
+        for _ in 0..MOVES_IN {
+            let nearest = shape.nearest(ball, f64::INFINITY)?;
+            let missing = nearest.distance + self.inset;
+            if missing <= ON_SHEET * self.spacing {
+                return Some(ball);
+            }
+            ball = (ball - nearest.normal * missing).max_components(low).min_components(high);
+        }
+        None
+    }
+
+    /// Balls that overlap move apart, one by one, the surface being a wall to them: by so much as makes their overlaps smaller
+    /// and leaves covered what they covered. Those that are new or have moved.
+    fn spread(
+        &self,
+        shape: &dyn Shape,
+        pitch: f64,
+        places: &Places,
+        first: usize,
+        balls: &mut Balls,
+    ) -> Balls {
+        // the widest place between others is hardly farther than they, but for this
+        let covered = self.spacing - 0.25 * pitch;
+        let mut changed: BTreeSet<u32> = (first..balls.places.len()).map(|ball| ball as u32).collect();
+        let mut active: BTreeSet<u32> = (first..balls.places.len()).map(|ball| ball as u32).collect();
+        for ball in first..balls.places.len() {
+            balls.visit_overlapping(ball as u32, balls.places[ball], |other, _| {
+                active.insert(other);
+            });
+        }
+        for _ in 0..SWEEPS {
+            let mut next = BTreeSet::new();
+            for ball in active {
+                let from = balls.places[ball as usize];
+                let (mut push, mut overlap) = (Vec3::ZERO, 0.0);
+                balls.visit_overlapping(ball, from, |other, apart| {
+                    let away = from - balls.places[other as usize];
+                    let way = away.try_normalised().unwrap_or(Vec3::AXES[other as usize % 3]);
+                    push += way * (self.spacing - apart);
+                    overlap += (self.spacing - apart).powi(2);
+                });
+                if overlap <= (ON_SHEET * self.spacing).powi(2) {
+                    continue;
+                }
+                let moved = [1.0, 0.5, 0.25, 0.125].into_iter().find_map(|share| {
+                    let to = self.below(shape, from + push * share)?;
+                    let mut left = 0.0;
+                    balls.visit_overlapping(ball, to, |_, apart| left += (self.spacing - apart).powi(2));
+                    let gains = left < overlap * (1.0 - LEAST_GAIN);
+                    (gains && self.stays_covered(places, ball, to, covered, balls)).then_some(to)
+                });
+                if let Some(to) = moved {
+                    balls.shift(ball, to);
+                    changed.insert(ball);
+                    next.insert(ball);
+                    balls.visit_overlapping(ball, to, |other, _| {
+                        next.insert(other);
+                    });
+                }
+            }
+            active = next;
+        }
+        // cells as wide as two diameters
+        let mut near = Balls::new(2.0 * self.spacing);
+        changed.into_iter().for_each(|ball| near.put(balls.places[ball as usize]));
+        near
+    }
+
+    /// Whether no place that is covered, or is less well than it should be, would be farther from all balls with one of them moved.
+    fn stays_covered(&self, places: &Places, ball: u32, to: Vec3, covered: f64, balls: &Balls) -> bool {
+        let from = balls.places[ball as usize];
+        let mut stays = true;
+        places.visit(from, 1, |_, place| {
+            let (before, after) = ((place - from).length(), (place - to).length());
+            if stays && before <= self.spacing && after > covered.max(before) {
+                let mut others = f64::INFINITY;
+                balls.visit(place, 1, |other, at| {
+                    if other != ball {
+                        others = others.min((at - place).length());
+                    }
+                });
+                stays = others <= covered.max(before);
+            }
+        });
+        stays
     }
 
     /// The place of the sheet near a place of it that is farthest from all balls, and how far: up the slope of the distance,
@@ -206,7 +344,7 @@ impl Filling {
                 let place = self.moved(shape, best.1 + way * step)?.max_components(low).min_components(high);
                 // no farther from where it began than the next candidates are
                 let is_on = (place - seed).length() <= 2.0 * pitch
-                    && self.is_inside(shape, place, -1e-6 * self.spacing);
+                    && self.is_inside(shape, place, -ON_SHEET * self.spacing);
                 is_on.then(|| (distance(place), place))
             });
             match tried.max_by(|a, b| a.0.total_cmp(&b.0)) {
@@ -243,7 +381,7 @@ impl Filling {
             }
         }
         // those that the box cut are as deep as they may
-        found.retain(|place| self.is_inside(shape, *place, -1e-6 * self.spacing));
+        found.retain(|place| self.is_inside(shape, *place, -ON_SHEET * self.spacing));
         found
     }
 
@@ -309,6 +447,12 @@ impl Cells {
         self.cells.entry(self.cell(place)).or_default().push(number);
     }
 
+    fn remove(&mut self, place: Vec3, number: u32) {
+        if let Some(numbers) = self.cells.get_mut(&self.cell(place)) {
+            numbers.retain(|other| *other != number);
+        }
+    }
+
     /// Those in cells at most `reach` from that of a place.
     fn visit(&self, place: Vec3, reach: i64, mut visit: impl FnMut(u32)) {
         let [x, y, z] = self.cell(place);
@@ -320,54 +464,76 @@ impl Cells {
     }
 }
 
-/// Balls that do not overlap.
-struct Balls {
+/// Places that are looked for by where they are: middles of balls, or what these are to cover.
+struct Places {
     places: Vec<Vec3>,
     cells: Cells,
 }
 
-impl Balls {
+type Balls = Places;
+
+impl Places {
     fn new(spacing: f64) -> Self {
         Self { places: Vec::new(), cells: Cells::new(spacing) }
     }
 
-    /// From the nearest ball; a diameter at most.
-    fn distance(&self, place: Vec3) -> f64 {
-        let mut least = self.cells.size;
-        self.cells.visit(place, 1, |other| least = least.min((self.places[other as usize] - place).length()));
-        least
+    /// Those in cells at most `reach` from that of a place, with their numbers.
+    fn visit(&self, place: Vec3, reach: i64, mut visit: impl FnMut(u32, Vec3)) {
+        self.cells.visit(place, reach, |number| visit(number, self.places[number as usize]));
+    }
+
+    /// The other balls that are nearer than a diameter to a place of one, with how far they are.
+    fn visit_overlapping(&self, ball: u32, place: Vec3, mut visit: impl FnMut(u32, f64)) {
+        self.visit(place, 1, |other, at| {
+            let apart = (at - place).length();
+            if other != ball && apart < self.cells.size {
+                visit(other, apart);
+            }
+        });
+    }
+
+    /// From the nearest ball; two diameters at most.
+    fn room(&self, place: Vec3) -> f64 {
+        self.nearest(place, 2)
     }
 
     /// From the nearest ball; [`FAR`] diameters at most.
     fn clearance(&self, place: Vec3) -> f64 {
+        self.nearest(place, FAR)
+    }
+
+    /// From the nearest ball; so many diameters at most.
+    fn nearest(&self, place: Vec3, most: i64) -> f64 {
         let mut reach = 1;
         loop {
             let mut least = reach as f64 * self.cells.size;
             let within = least;
-            self.cells.visit(place, reach, |other| {
-                least = least.min((self.places[other as usize] - place).length());
-            });
+            self.visit(place, reach, |_, at| least = least.min((at - place).length()));
             // all balls that near are in the cells looked at
-            if least < within || reach >= FAR {
+            if least < within || reach >= most {
                 return least;
             }
             reach *= 2;
         }
     }
 
-    /// Puts a ball where there is known to be room.
+    /// Puts a ball where there is known to be room, or is to be.
     fn put(&mut self, place: Vec3) {
         self.cells.add(place, self.places.len() as u32);
         self.places.push(place);
+    }
+
+    fn shift(&mut self, ball: u32, to: Vec3) {
+        self.cells.remove(self.places[ball as usize], ball);
+        self.cells.add(to, ball);
+        self.places[ball as usize] = to;
     }
 
     /// Whether there was room.
     fn add(&mut self, place: Vec3) -> bool {
         let closest = NEARLY * self.cells.size;
         let mut is_free = true;
-        self.cells.visit(place, 1, |other| {
-            is_free &= (self.places[other as usize] - place).length_sq() >= closest * closest;
-        });
+        self.visit(place, 1, |_, at| is_free &= (at - place).length_sq() >= closest * closest);
         if is_free {
             self.put(place);
         }
@@ -380,7 +546,7 @@ mod tests {
     use souple_math::Mat3;
 
     use super::*;
-    use crate::contact::shape::{Cuboid, Sphere};
+    use crate::contact::shape::{Capsule, Cuboid, Sphere};
 
     /// On the surface no place is so far from all balls that another would have room; no ball leaves the shape, none overlap.
     #[test]
@@ -411,43 +577,65 @@ mod tests {
         assert!(share > 0.4, "{share}");
     }
 
-    /// Closing leaves narrower gaps. On a sphere of radius `ρ` a ball that touches those around a place `√3 R` from them is `d R` from the surface,
-    /// `d² - 3 d R/(ρ - R) = 1`: 1.33 where `ρ` is 6.2 radii.
+    /// Closed, no place of the surface is farther than a radius from all balls, of spheres from a ball's own size up, of boxes, of capsules: no ball
+    /// leaves the shape for that. A place in a corner of a box is `√3` radii from the ball below it, and more than a diameter from others: those are `2 - √3`
+    /// radii from that at least, before they spread.
     #[test]
     fn gaps_are_closed() {
-        let mut widest = [0.0_f64; 2];
-        for spacing in [0.13, 0.17] {
-            let sphere = Sphere::new(Vec3::new(0.3, 0.1, -0.2), 0.53);
-            let bounds = BoundingBox::of([sphere.centre]).grown(sphere.radius);
-            for (gaps, widest) in [Gaps::Left, Gaps::Closed].into_iter().zip(&mut widest) {
-                let filling = Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds, gaps };
-                let balls = filling.fill(&sphere).unwrap();
-                let mut seen: f64 = 0.0;
-                for n in 0..20_000 {
-                    let z = 1.0 - (2.0 * f64::from(n) + 1.0) / 20_000.0;
-                    let (turn, r) = (2.399_963 * f64::from(n), (1.0 - z * z).sqrt());
-                    let place = sphere.centre + Vec3::new(r * turn.cos(), r * turn.sin(), z) * sphere.radius;
-                    let gap = balls.iter().map(|ball| (*ball - place).length()).fold(f64::INFINITY, f64::min);
-                    seen = seen.max(gap / (0.5 * spacing) - 1.0);
-                }
-                // what is told is on the surface, and as wide as any place that was looked at, but for how far those are apart
-                let gap = filling.widest_gap(&sphere, &balls).unwrap();
-                let nearest =
-                    balls.iter().map(|ball| (*ball - gap.place).length()).fold(f64::INFINITY, f64::min);
-                assert!((nearest - 0.5 * spacing - gap.width).abs() < 1e-12);
-                assert!(((gap.place - sphere.centre).length() - sphere.radius).abs() < 1e-9);
-                let told = gap.width / (0.5 * spacing);
-                // 20,000 places are (4 π/20,000)^½ = 0.025 radii of the sphere apart
-                let apart = 0.025 * sphere.radius / (0.5 * spacing);
-                assert!(told > seen - 0.5 * apart, "{told} is told and {seen} is seen");
-                *widest = widest.max(told.max(seen));
-                for (n, ball) in balls.iter().enumerate() {
-                    assert!(balls[..n].iter().all(|other| (*other - *ball).length() >= NEARLY * spacing));
+        let place = Vec3::new(0.3, 0.1, -0.2);
+        // in radii of balls
+        let spheres = [1.0, 1.3, 1.7, 2.0, 2.1, 2.3, 2.6, 3.0, 3.4, 3.9, 4.5, 5.2, 6.2, 8.0, 8.2, 11.0]
+            .map(|radius| Box::new(Sphere::new(place, radius)) as Box<dyn Shape>);
+        let boxes = [
+            [2.0, 2.0, 2.0],
+            [2.5, 2.5, 2.5],
+            [3.7, 5.1, 2.0],
+            [7.9, 6.3, 5.2],
+            [11.3, 3.3, 2.2],
+            [8.0, 8.0, 8.0],
+        ]
+        .map(|size| {
+            let half_size = Vec3::from_array(size) * 0.5;
+            let axes = souple_math::exponential(Vec3::new(0.2, 0.3, 0.1));
+            Box::new(Cuboid { centre: place, half_size, axes }) as Box<dyn Shape>
+        });
+        let capsules = [(1.0, 5.0), (1.4, 3.3), (2.2, 7.1), (3.1, 2.0)].map(|(radius, length)| {
+            Box::new(Capsule { from: place, to: place + Vec3::new(0.6, 0.0, 0.8) * length, radius })
+                as Box<dyn Shape>
+        });
+        for (n, shape) in spheres.into_iter().chain(boxes).chain(capsules).enumerate() {
+            let surface = shape.outline().unwrap().surface;
+            let bounds = BoundingBox::of(surface.points.iter().copied());
+            let filling =
+                Filling { spacing: 2.0, inset: 1.0, depth: f64::INFINITY, bounds, gaps: Gaps::Closed };
+            let balls = filling.fill(shape.as_ref()).unwrap();
+            let mut widest: f64 = 0.0;
+            for triangle in 0..surface.triangles.len() as u32 {
+                let [a, b, c] = surface.corners(triangle);
+                let fine = ((b - a).length().max((c - a).length()) / 0.1).ceil() as u32;
+                for (i, j) in (0..=fine).flat_map(|i| (0..=fine - i).map(move |j| (i, j))) {
+                    let seen = a
+                        + (b - a) * (f64::from(i) / f64::from(fine))
+                        + (c - a) * (f64::from(j) / f64::from(fine));
+                    // outlines are polygons
+                    let nearest = shape.nearest(seen, f64::INFINITY).unwrap();
+                    let seen = seen - nearest.normal * nearest.distance;
+                    let gap = balls.iter().map(|ball| (*ball - seen).length()).fold(f64::INFINITY, f64::min);
+                    widest = widest.max(gap - 1.0);
                 }
             }
+            let told = filling.widest_gap(shape.as_ref(), &balls).unwrap().width;
+            let depth = |ball: &Vec3| -shape.nearest(*ball, f64::INFINITY).unwrap().distance;
+            let shallow = balls.iter().map(depth).fold(f64::INFINITY, f64::min);
+            let apart = |n: usize| {
+                balls[..n].iter().map(|other| (*other - balls[n]).length()).fold(f64::INFINITY, f64::min)
+            };
+            let closest = (0..balls.len()).map(apart).fold(f64::INFINITY, f64::min);
+            // ends of searches are so fine, and uneven places are looked at
+            assert!(widest <= 1.0 + 2.0 * FINEST && told <= 1.0 + 1e-9, "{n}: {widest} and {told}");
+            assert!(shallow >= 1.0 - 4.0 * ON_SHEET, "{n}: {shallow}");
+            assert!(closest >= 2.0 - 3.0_f64.sqrt(), "{n}: {closest}");
         }
-        let [left, closed] = widest;
-        assert!(closed < left && closed <= 1.33, "{left} and {closed} radii");
     }
 
     /// Balls deeper than they need be leave a gap of that depth, which is told.

@@ -5,7 +5,7 @@
 //! A bond pushes its ends apart by `φ = −s k (D − L0) − s Z (D − D^r)`, with `s = (θ_m − θ)/(θ_m − θ_s)` of the mean temperature `θ` of its
 //! ends, between 1, where matter is solid, and 0, where it has melted. There it is gone. Ends that are nearer than the reach below
 //! the melting point set: they get a bond at the length that they have, which pushes nothing, so that neither melting nor setting is a jump of forces.
-//! A bond that is drawn beyond the range of its crowd tears, and gives off what it stored, where pairs stand in lists of the crowd's own.
+//! A bond that is drawn beyond the range of its crowd tears, and gives off what it stored.
 
 use souple_formal::Formula;
 use souple_math::Vec3;

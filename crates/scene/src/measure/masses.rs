@@ -2,14 +2,46 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use souple_engine::{System, World};
 use souple_math::Vec3;
 use souple_mesh::Sets;
-use souple_models::network::Crowd;
+use souple_models::contact::Shape;
+use souple_models::network::{Crowd, Filling};
 
 use super::Part;
+use crate::spec::body::Placement;
+use crate::spec::network::Filled;
 use crate::spec::quantity::MassesQuantity;
+
+/// What masses fill.
+#[derive(Clone, Debug)]
+pub struct Mould {
+    shape: Arc<dyn Shape>,
+    filling: Filling,
+    surface: Vec<Vec3>,
+    /// What moved what filled it to its start, innermost first.
+    placements: Vec<Placement>,
+}
+
+impl Mould {
+    pub fn new(filled: &Filled, placements: Vec<Placement>) -> Self {
+        let Filled { shape, filling, .. } = filled;
+        let surface = filling.surface_places(shape.as_ref());
+        Self { shape: shape.clone(), filling: *filling, surface, placements }
+    }
+
+    /// [m]; no number where no surface is.
+    fn gap(&self, places: &[Vec3]) -> f64 {
+        let Self { shape, filling, surface, placements } = self;
+        let back = |place: &Vec3| {
+            placements.iter().rev().fold(*place, |place, placement| placement.origin_of(place))
+        };
+        let places: Vec<Vec3> = places.iter().map(back).collect();
+        filling.widest_gap_of(shape.as_ref(), surface, &places).map_or(f64::NAN, |gap| gap.width)
+    }
+}
 
 /// What is measured of which masses.
 #[derive(Clone, Debug)]
@@ -22,17 +54,19 @@ pub struct Multitude {
     up: Vec3,
     /// Neighbours as the scene gives them, of a quantity that asks for them.
     before: Vec<[u32; 2]>,
+    /// Of a quantity that asks for it.
+    mould: Option<Mould>,
 }
 
 impl Multitude {
-    pub fn new(quantity: MassesQuantity, part: Part, within: f64, up: Vec3) -> Self {
+    pub fn new(quantity: MassesQuantity, part: Part, within: f64, up: Vec3, mould: Option<Mould>) -> Self {
         let is_asked = quantity == MassesQuantity::Kept;
         let before = if is_asked { neighbours(&part.starts, within) } else { Vec::new() };
-        Self { quantity, part, within, up, before }
+        Self { quantity, part, within, up, before, mould }
     }
 
     pub fn measure(&self, world: &mut World) -> f64 {
-        let Multitude { quantity, ref part, within, up, ref before } = *self;
+        let Multitude { quantity, ref part, within, up, ref before, ref mould } = *self;
         if quantity == MassesQuantity::Pairs {
             let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
             let pairs = &world.state().systems[part.system].pairs;
@@ -61,6 +95,9 @@ impl Multitude {
         if quantity == MassesQuantity::Relief {
             return relief(&places, within, up);
         }
+        if let Some(mould) = mould {
+            return mould.gap(&places);
+        }
         let near = neighbours(&places, within);
         match quantity {
             MassesQuantity::Parts => {
@@ -88,6 +125,7 @@ impl Multitude {
                 still as f64 / before.len() as f64
             }
             MassesQuantity::Relief
+            | MassesQuantity::Gap
             | MassesQuantity::Pairs
             | MassesQuantity::Interactions
             | MassesQuantity::Temperature

@@ -24,10 +24,11 @@ use souple_engine::{Force, World};
 use souple_math::Vec3;
 
 use self::against::Reference;
-use self::masses::Multitude;
+use self::masses::{Mould, Multitude};
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
+use crate::spec::network::{MassGroup, Places};
 use crate::spec::octree::OctreeSpec;
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
@@ -222,7 +223,11 @@ impl ProbeInfo {
                 if matches!(quantity, MassesQuantity::Temperature | MassesQuantity::Bonds) {
                     has_heat(probe, draft)?;
                 }
-                Target::Masses(Box::new(Multitude::new(quantity, part, within, up)))
+                let mould = match quantity {
+                    MassesQuantity::Gap => Some(mould(probe, draft)?),
+                    _ => None,
+                };
+                Target::Masses(Box::new(Multitude::new(quantity, part, within, up, mould)))
             }
             (Subject::Levels(quantity), _) => Target::Levels(quantity, levels_part(probe, draft)?),
         };
@@ -307,6 +312,41 @@ impl ProbeInfo {
                 let divisor = if self.reduction == Reduction::Mean { vectors.len() as f64 } else { 1.0 };
                 Measurement::Vector(sum / divisor)
             }
+        }
+    }
+}
+
+/// The one shape that masses of a probe fill.
+fn mould(probe: &Probe, draft: &Draft) -> Option<Mould> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let network = body.spec.network.as_ref()?;
+    let points: Option<Vec<u32>> = probe.region.as_ref().map(|region| draft.selector(body).points(region));
+    let is_asked = |group: &&MassGroup| {
+        let Some(numbers) = network.numbers_of(&group.name) else { return false };
+        points.as_ref().is_none_or(|points| points.iter().any(|point| numbers.contains(point)))
+    };
+    let filled = network.masses.iter().filter(is_asked).filter_map(|group| match &group.places {
+        Places::Filled(fill) => Some((group, fill.filled.get()?)),
+        _ => None,
+    });
+    let filled: Vec<_> = filled.collect();
+    match filled[..] {
+        [(group, filled)] => {
+            let placements = group.placements.iter().chain([&body.spec.placement]).cloned().collect();
+            Some(Mould::new(filled, placements))
+        }
+        _ => {
+            let message = format!(
+                "{} of the masses asked about fill a shape",
+                souple_table::counted(filled.len() as u64, "group")
+            );
+            draft.log.add(
+                Code::Conflict,
+                &probe.site,
+                message,
+                "`region` with masses of one group that has `fill`",
+            );
+            None
         }
     }
 }
@@ -510,6 +550,7 @@ fn of_world(quantity: WorldQuantity, world: &mut World) -> f64 {
         WorldQuantity::DissipatedEnergy => {
             world.energy().by_force.iter().map(|(_, energy)| energy.dissipated).sum()
         }
+        WorldQuantity::ControlEnergy => world.energy().made_by_control.iter().map(|(_, made)| made).sum(),
         WorldQuantity::Time => world.time(),
     }
 }

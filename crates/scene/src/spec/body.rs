@@ -354,6 +354,15 @@ impl Placement {
         souple_math::exponential(self.rotation) * (point - self.centre) + self.centre + self.translation
     }
 
+    /// Where a point comes from that goes there [m].
+    pub fn origin_of(&self, place: Vec3) -> Vec3 {
+        let moved = place - self.translation;
+        if self.rotation == Vec3::ZERO {
+            return moved;
+        }
+        souple_math::exponential(-self.rotation) * (moved - self.centre) + self.centre
+    }
+
     /// Where a direction goes.
     pub fn turn(&self, direction: Vec3) -> Vec3 {
         if self.rotation == Vec3::ZERO {

@@ -77,6 +77,7 @@ pub enum MassesQuantity {
     Spacing,
     Kept,
     Relief,
+    Gap,
     Pairs,
     Interactions,
     Temperature,
@@ -181,6 +182,7 @@ pub enum Momentum {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldQuantity {
     TotalEnergy,
+    ControlEnergy,
     EnergyBalance,
     KineticEnergy,
     StoredEnergy,
@@ -501,6 +503,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         MECHANICS,
         world("J", WorldQuantity::EnergyBalance),
     ),
+    &entry(
+        "energy.controls",
+        "that controls have made since the start by what they changed: stiffnesses, links made and broken",
+        MECHANICS,
+        world("J", WorldQuantity::ControlEnergy),
+    ),
     &entry("time", "simulated", KINEMATICS, world("s", WorldQuantity::Time)),
     &entry("skin.area", "of its triangles", SKIN, skin("m^2", SkinQuantity::Area)),
     &entry("skin.volume", "enclosed by its triangles", SKIN, skin("m^3", SkinQuantity::Volume)),
@@ -565,6 +573,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "root of the mean square of the heights of the topmost masses, against gravity, in columns as wide as the key `within`, about their mean",
         MULTITUDE,
         masses("m", MassesQuantity::Relief),
+    ),
+    &entry(
+        "masses.gap",
+        "from the surface of the shape that masses fill, where it is farthest from them, to the nearest of them, less its radius",
+        MULTITUDE,
+        masses("m", MassesQuantity::Gap),
     ),
     &entry(
         "masses.pairs",

@@ -366,7 +366,6 @@ fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
             "group": fill.group,
             "balls": fill.balls,
             "widest_gap": fill.widest_gap,
-            "seconds": fill.seconds,
         })).collect::<Vec<_>>(),
     })
 }
@@ -390,10 +389,9 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
             format!("; no place of the surface that was looked at is farther than {radii:.3} radii from one")
         });
         print_line(format_args!(
-            "    {}: {} fill a shape, in {:.2} s{}",
+            "    {}: {} fill a shape{}",
             fill.group,
             souple_table::counted(fill.balls as u64, "ball"),
-            fill.seconds,
             gap.unwrap_or_default(),
         ));
     }

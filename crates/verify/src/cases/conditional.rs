@@ -240,6 +240,29 @@ pub(super) const CASES: &[Case] = &[
         ..SWITCHED
     },
     Case {
+        id: "stiffening_is_booked",
+        what: "energy that the control has made which stiffened the spring, (400 - 100) N/m q²/2 where it stood: more than there was",
+        // the other spring stays
+        settings: &["networks.latched.controls.release.connects=\"previous > 0\""],
+        reading: Reading::last("controls").after(40),
+        // κ = 0.01 from q = 0.1 m at rest: q = -0.04624 m after 20 steps
+        reference: 0.320_734_104_131_277_7,
+        source: "EXP-57: the jump of the energy is logged",
+        mutation: "networks.driven.controls.stiffen.value=\"if(t < 0.195, 100, 401)\"",
+        ..SWITCHED
+    },
+    Case {
+        id: "cut_is_booked",
+        what: "the same and what the cut took away, 400 N/m q²/2 after 50 steps",
+        settings: &["networks.latched.controls.release.connects=\"previous > 0\""],
+        reading: Reading::last("controls").after(80),
+        // κ = 0.04 from there: q = -0.03344 m
+        reference: 0.097_040_954_808_387_06,
+        source: "EXP-57: the jump of the energy is logged",
+        mutation: "networks.driven.controls.cut.connects=\"t < 0.505\"",
+        ..SWITCHED
+    },
+    Case {
         id: "latched_spring",
         what: "a mass let go once it is faster than 0.5 m/s keeps its speed",
         reading: Reading::last("latched").after(80),

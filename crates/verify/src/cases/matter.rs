@@ -70,6 +70,25 @@ const STACK: Case = Case {
     ..OSCILLATOR
 };
 
+/// How far the surface of a figure is from its balls where it is farthest; nothing moves.
+macro_rules! mould_is_full {
+    ($id:literal, $probe:literal, $radius:literal, $held:literal) => {
+        Case {
+            id: $id,
+            capabilities: &["JIM-37"],
+            what: "the widest gap between the surface that balls fill and the nearest of them: a radius at most",
+            scene: "moulded_figures",
+            settings: &[$held],
+            reading: Reading::last($probe).after(1),
+            reference: $radius,
+            tolerance: Tolerance::AtMost,
+            source: "specification §2.12.4: any closed mesh or implicit shape, balls within one radius",
+            mutation: "parameters.gaps=left",
+            ..OSCILLATOR
+        }
+    };
+}
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "led_bulk",
@@ -935,4 +954,9 @@ pub(super) const CASES: &[Case] = &[
         mutation: "networks.belt.links[0].law.stiffness=200",
         ..OSCILLATOR
     },
+    mould_is_full!("bunny_is_full", "bunny", 0.005, "networks.bunny.masses.balls.fixed=true"),
+    mould_is_full!("organ_is_full", "liver", 0.005, "networks.liver.masses.balls.fixed=true"),
+    mould_is_full!("ring_is_full", "ring", 0.006, "networks.ring.masses.balls.fixed=true"),
+    mould_is_full!("sphere_is_full", "sphere", 0.01, "networks.sphere.masses.balls.fixed=true"),
+    mould_is_full!("block_is_full", "block", 0.009, "networks.block.masses.balls.fixed=true"),
 ];

@@ -523,7 +523,13 @@ impl Words<'_> {
         };
         let value = match number_in(text, unit) {
             Some(Ok(value)) => value,
-            Some(Err(problem)) => return refuse(said.place, format!("says `{words}`: {problem}")),
+            Some(Err(problem)) => match named {
+                Some((name, _)) => {
+                    let what = format!("stands in `{words}` of `{}`: {problem}", said.place);
+                    return refuse(&format!("parameters.{name}"), what);
+                }
+                None => return refuse(said.place, format!("says `{words}`: {problem}")),
+            },
             None => formula()?.evaluate(&[]),
         };
         if value.is_finite() {

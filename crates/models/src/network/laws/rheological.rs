@@ -1,5 +1,7 @@
 //! Any series and parallel network of springs, dampers and sliders, written as text.
 
+use std::cell::RefCell;
+
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
@@ -62,17 +64,27 @@ pub const ENTRY: LinkEntry = LinkEntry {
 fn read(making: &Making) -> Result<Rheological, LinkError> {
     let texts = making.values.texts("parameters");
     let (names, values) = constants(texts, 0, &[])?;
+    // what is wrong with a parameter is shown there
+    let wrong = RefCell::new(None);
     let number = |text: &str, unit: &str| {
         // what stands for a parameter has the unit of that
         let named = texts.iter().find(|(name, _)| name == text);
         let written = named.map_or(text, |(_, value)| value);
-        number_in(written, unit).unwrap_or_else(|| match formula("network", text, &names) {
+        let read = number_in(written, unit);
+        if let (Some((name, _)), Some(Err(problem))) = (named, &read) {
+            let what = format!("stands in `network`: {problem}");
+            *wrong.borrow_mut() = Some(LinkError::text(format!("parameters.{name}"), what));
+        }
+        read.unwrap_or_else(|| match formula("network", text, &names) {
             Ok(formula) => Ok(formula.evaluate(&values)),
             Err(LinkError::Formula { error, .. }) => Err(error.without_place()),
             Err(error) => Err(error.to_string()),
         })
     };
     let network = rheology::read(making.values.text("network"), &number).map_err(|error| {
+        if let Some(wrong) = wrong.take() {
+            return wrong;
+        }
         let what = format!("cannot be built: {}", error.without_place());
         LinkError::Text { place: "network".to_owned(), what, part: error.span() }
     })?;

@@ -1,6 +1,6 @@
 //! Masses that fill shapes, or stand where files have points, get their places.
 
-use std::time::Instant;
+use std::sync::Arc;
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -44,7 +44,7 @@ pub fn fill_all(draft: &mut Draft) {
             continue;
         };
         let FillSpec { spacing, inset, depth, gaps, .. } = **fill;
-        let (filling, clock) = (Filling { spacing, inset, depth, bounds, gaps }, Instant::now());
+        let filling = Filling { spacing, inset, depth, bounds, gaps };
         let places = match filling.fill(shape.as_ref()) {
             Ok(places) => places,
             Err(error) => {
@@ -52,7 +52,6 @@ pub fn fill_all(draft: &mut Draft) {
                 continue;
             }
         };
-        let seconds = clock.elapsed().as_secs_f64();
         let widest = match gaps {
             Gaps::Closed => filling.widest_gap(shape.as_ref(), &places),
             Gaps::Left => None,
@@ -69,7 +68,7 @@ pub fn fill_all(draft: &mut Draft) {
                 group.name,
             ));
         }
-        drop(fill.filled.set(Filled { places, widest, seconds }));
+        drop(fill.filled.set(Filled { places, widest, shape, filling }));
     }
     for body in &draft.spec.bodies {
         if let Some((message, expected)) = body.network.as_ref().and_then(Network::too_many) {
@@ -85,9 +84,9 @@ fn shape_of(
     body: &str,
     draft: &Draft,
     warnings: &mut Vec<String>,
-) -> Option<Box<dyn Shape>> {
+) -> Option<Arc<dyn Shape>> {
     if let Some(chosen) = &fill.shape {
-        return contact::built(draft, chosen);
+        return contact::built(draft, chosen).map(Arc::from);
     }
     let mesh = shape::mesh_of(fill.mesh.as_ref()?, body, draft, warnings)?;
     let surface = match mesh.facet_surface() {
@@ -95,7 +94,7 @@ fn shape_of(
         _ => mesh.boundary_surface(),
     };
     match ClosedSurface::new(surface) {
-        Ok(closed) => Some(Box::new(closed)),
+        Ok(closed) => Some(Arc::new(closed)),
         Err(error) => {
             draft.log.add(Code::Mesh, &fill.site, error.to_string(), "a mesh with a closed surface");
             None

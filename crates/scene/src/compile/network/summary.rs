@@ -30,8 +30,6 @@ pub struct FillInfo {
     pub balls: usize,
     /// From the surface to the nearest ball, where that is farthest, in radii; none where gaps are left.
     pub widest_gap: Option<f64>,
-    /// What filling took [s].
-    pub seconds: f64,
 }
 
 /// Links of one law.
@@ -86,9 +84,9 @@ impl NetworkInfo {
 
 fn fill(group: &MassGroup) -> Option<FillInfo> {
     let Places::Filled(fill) = &group.places else { return None };
-    let Filled { places, widest, seconds } = fill.filled.get()?;
+    let Filled { places, widest, .. } = fill.filled.get()?;
     let widest_gap = widest.map(|gap| gap.width / (0.5 * fill.spacing));
-    Some(FillInfo { group: group.name.clone(), balls: places.len(), widest_gap, seconds: *seconds })
+    Some(FillInfo { group: group.name.clone(), balls: places.len(), widest_gap })
 }
 
 /// Of every network of a scene.

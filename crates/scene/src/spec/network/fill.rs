@@ -1,11 +1,11 @@
 //! Masses that fill a shape: what is filled, and how closely.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use souple_math::Vec3;
-use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
-use souple_models::network::{Gap, Gaps};
+use souple_models::contact::{SHAPES, Shape as ContactShape};
+use souple_models::network::{Filling, Gap, Gaps};
 use souple_table::{Range, Value};
 
 use super::super::contact::SHAPE_ENTRY;
@@ -61,8 +61,9 @@ pub struct Filled {
     pub places: Vec<Vec3>,
     /// Where the surface is farthest from the balls.
     pub widest: Option<Gap>,
-    /// What it took [s].
-    pub seconds: f64,
+    /// What was filled, and how.
+    pub shape: Arc<dyn ContactShape>,
+    pub filling: Filling,
 }
 
 /// A shape to be filled, and what that gave once it has been.
