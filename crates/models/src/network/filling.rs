@@ -30,6 +30,8 @@ const MOVES_IN: usize = 32;
 const ON_SHEET: f64 = 1e-6;
 /// Of a diameter: a ball that is put below a place is so near to it at most. In edges sharper than `2 asin(1/(2 · 0.95))` none is, 63.5°.
 const OF_USE: f64 = 0.95;
+/// Of a diameter: what is less far from a depth is there.
+const LANDED: f64 = 1e-9;
 /// How often balls are put into gaps and spread.
 const ROUNDS: usize = 4;
 /// In which every ball that overlaps may move once.
@@ -127,7 +129,8 @@ impl Filling {
         let (_, seed) = seeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let on_surface = Self { inset: 0.0, ..*self };
         let pitch = SHEET_PITCH * self.spacing;
-        let (apart, place) = on_surface.widest_near(shape, seed, pitch, |place| balls.clearance(place));
+        let (apart, place) =
+            on_surface.widest_near(shape, (seed, pitch), 0.0, |place| balls.clearance(place));
         Some(Gap { place, width: apart - 0.5 * self.spacing })
     }
 
@@ -219,7 +222,8 @@ impl Filling {
             let mut is_known = balls.room(seed) <= self.spacing - pitch;
             ends.visit(seed, 1, |_, end| is_known |= (end - seed).length() < pitch);
             while !is_known {
-                let (apart, place) = surface.widest_near(shape, seed, pitch, |place| balls.room(place));
+                let (apart, place) =
+                    surface.widest_near(shape, (seed, pitch), self.spacing, |place| balls.room(place));
                 let ball = (apart > self.spacing).then(|| self.below(shape, place)).flatten();
                 match ball {
                     Some(ball) if (ball - place).length() <= OF_USE * self.spacing => balls.put(ball),
@@ -324,28 +328,30 @@ impl Filling {
     }
 
     /// The place of the sheet near a place of it that is farthest from all balls, and how far: up the slope of the distance,
-    /// by ever shorter steps.
+    /// by ever shorter steps, till what is left of them leads to no more than `least`.
     fn widest_near(
         &self,
         shape: &dyn Shape,
-        seed: Vec3,
-        pitch: f64,
+        (seed, pitch): (Vec3, f64),
+        least: f64,
         distance: impl Fn(Vec3) -> f64,
     ) -> (f64, Vec3) {
         let BoundingBox { low, high } = self.bounds;
         let (mut best, mut step) = ((distance(seed), seed), pitch);
         let mut moves = 0;
         while step > FINEST * self.spacing && moves < MOST_MOVES {
+            // where a step gains nothing in any direction, halves of it hardly come farther than twice its diagonal
+            if best.0 + 4.0 * 3.0_f64.sqrt() * step < least {
+                break;
+            }
             moves += 1;
             let around = (0..27).map(|n| {
                 Vec3::new((n % 3) as f64, (n / 3 % 3) as f64, (n / 9) as f64) - Vec3::new(1.0, 1.0, 1.0)
             });
             let tried = around.filter_map(|way| {
-                let place = self.moved(shape, best.1 + way * step)?.max_components(low).min_components(high);
+                let place = self.landed(shape, best.1 + way * step)?;
                 // no farther from where it began than the next candidates are
-                let is_on = (place - seed).length() <= 2.0 * pitch
-                    && self.is_inside(shape, place, -ON_SHEET * self.spacing);
-                is_on.then(|| (distance(place), place))
+                ((place - seed).length() <= 2.0 * pitch).then(|| (distance(place), place))
             });
             match tried.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 // what gains next to nothing for its length would creep along ridges for ever
@@ -393,6 +399,22 @@ impl Filling {
             place -= nearest.normal * (nearest.distance + self.inset);
         }
         place.is_finite().then_some(place)
+    }
+
+    /// The same within the bounds, as soon as it is as deep; `None` of what is not so in the end, or deeper than is asked for.
+    fn landed(&self, shape: &dyn Shape, start: Vec3) -> Option<Vec3> {
+        let BoundingBox { low, high } = self.bounds;
+        let mut place = start;
+        for _ in 0..=MOVES {
+            let nearest = shape.nearest(place, f64::INFINITY)?;
+            let missing = nearest.distance + self.inset;
+            if missing.abs() <= LANDED * self.spacing {
+                return Some(place);
+            }
+            place = (place - nearest.normal * missing).max_components(low).min_components(high);
+        }
+        // what the bounds cut is as deep as it may be
+        self.is_inside(shape, place, -ON_SHEET * self.spacing).then_some(place)
     }
 
     fn is_inside(&self, shape: &dyn Shape, place: Vec3, margin: f64) -> bool {
