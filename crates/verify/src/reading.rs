@@ -56,6 +56,8 @@ pub enum Statistic {
     Span,
     /// The same from so many world periods on, of the course in `probes.csv`.
     LateSpan(u64),
+    /// The last over that after so many world periods.
+    LastOver(usize),
     /// The strongest frequency [Hz].
     Frequency,
 }
@@ -206,7 +208,11 @@ impl Observation {
         let trace = outcome.traces.iter().find(|trace| trace.name == self.probe);
         let trace = trace.ok_or_else(|| format!("the scene has no probe `{}`", self.probe))?;
         let value = self.statistic.of(trace, self.component.unwrap_or(0));
-        let unit = if self.statistic == Statistic::Frequency { "Hz" } else { trace.unit };
+        let unit = match self.statistic {
+            Statistic::Frequency => "Hz",
+            Statistic::LastOver(_) => "",
+            _ => trace.unit,
+        };
         Ok((value.ok_or("the probe has no such component, or does not swing")?, unit))
     }
 }
@@ -225,6 +231,10 @@ impl Statistic {
                 let late: Vec<f64> = late.collect::<Option<_>>()?;
                 let greatest = late.iter().copied().reduce(f64::max)?;
                 Some(greatest - late.iter().copied().reduce(f64::min)?)
+            }
+            Self::LastOver(period) => {
+                let then = trace.values.get(period * trace.components + component)?;
+                Some(of(&summary.last)? / then)
             }
             Self::Frequency => summary.frequency.get(component).copied().flatten(),
         }

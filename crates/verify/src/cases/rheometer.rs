@@ -19,6 +19,9 @@ const PLASTIC: Case = Case {
 
 const TE: &str = "world.period=0.0033333333333333335";
 
+/// A hundred times as many steps.
+const FINE: &str = "world.period=3.3333333333333335e-05";
+
 const BURGER_HUNG: &str = r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#;
 const TEN_NEWTONS_FOR_A_SECOND: &str =
     r#"networks.sample.loads=[{ region = "lead", force = ["if(t < 0.9999, -10, 0)", 0, 0] }]"#;
@@ -62,6 +65,19 @@ const BURGER: Case = Case {
     mutation: "networks.sample.links[0].law.solid_viscosity=51",
     ..MAXWELL
 };
+
+const PASTE: &str = r#"networks.sample.links[0].law={ name = "bingham", stiffness = 1000, viscosity = 100, traction = 10, compression = 10 }"#;
+const LED_BY_FORCE: &str = "networks.sample.pins=[]";
+
+/// A grip that is told to close and to open.
+const GRIP: &str = r#"networks.sample.links[0].law={ name = "finite_state", states = { open = "0", closed = "-k * (D - L0)" }, transitions = { "open -> closed" = "t > 0.055 and t < 0.105", "closed -> open" = "t > 0.105" }, entries = { closed = "L0 = D" }, parameters = { k = 1000 } }"#;
+
+/// Softer on the way back.
+const CURVED_LOOP: &str = r#"networks.sample.links[0].law={ name = "finite_state", states = { loads = "-k * (D - L0)^3", unloads = "-k / 2 * (D - L0)^3" }, transitions = { "loads -> unloads" = "V < 0", "unloads -> loads" = "V > 0" }, parameters = { k = "1e6" } }"#;
+
+const DEAD_ZONE: &str = r#"networks.sample.links[0].law={ name = "piecewise_linear", thresholds = [0.985, 0.99, 1.01, 1.02], slopes = [0, -1000, 0, -1000, 0], zero = 1 }"#;
+
+const COHESION: &str = r#"networks.sample.links[0].law={ name = "cohesion", hard = 0.95, distance = 1, peak = 1.1, range = 1.5, repulsion = 10000, cohesion = 1000 }"#;
 
 /// A law read at a length led to within one step.
 const CURVE: Case = Case {
@@ -271,6 +287,7 @@ pub(super) const CASES: &[Case] = &[
             r#"networks.sample.links[0].law={ name = "bingham", stiffness = 1000, viscosity = 0, traction = 10, compression = 10 }"#,
         ],
         reference: 10.0,
+        tolerance: Tolerance::Absolute(1e-12),
         mutation: "networks.sample.links[0].law.traction=10.1",
         ..PLASTIC
     },
@@ -513,5 +530,434 @@ pub(super) const CASES: &[Case] = &[
         source: "EXP-43: recovery of the instantaneous and of the delayed part",
         mutation: "networks.sample.links[0].law.fluid_viscosity=501",
         ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_1",
+        what: "an elasto-plastic link pulled to 1.005 m: elastic",
+        reading: PULL.after(1),
+        reference: 5.0,
+        mutation: "networks.sample.links[0].law.stiffness=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_2",
+        what: "an elasto-plastic link pulled to 1.010 m: at its limit",
+        reading: PULL.after(2),
+        reference: 10.0,
+        mutation: "networks.sample.links[0].law.stiffness=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_3",
+        what: "an elasto-plastic link pulled to 1.015 m",
+        reading: PULL.after(3),
+        reference: 11.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_4",
+        what: "an elasto-plastic link pulled to 1.020 m",
+        reading: PULL.after(4),
+        reference: 12.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_6",
+        what: "the same unloaded to 1.025 m: parallel to k",
+        reading: PULL.after(6),
+        reference: 9.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_7",
+        what: "the same unloaded to 1.020 m: parallel to k",
+        reading: PULL.after(7),
+        reference: 4.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_8",
+        what: "the same unloaded to 1.015 m: parallel to k",
+        reading: PULL.after(8),
+        reference: -1.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_9",
+        what: "the same unloaded to 1.010 m: parallel to k",
+        reading: PULL.after(9),
+        reference: -6.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_11",
+        what: "the same pushed to 0.990 m",
+        reading: PULL.after(11),
+        reference: -13.2,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_13",
+        what: "the same let go to 0.990 m",
+        reading: PULL.after(13),
+        reference: -5.2,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_14",
+        what: "the same let go to 1.000 m",
+        reading: PULL.after(14),
+        reference: 4.8,
+        ..PLASTIC
+    },
+    Case {
+        id: "bingham_holds_below",
+        capabilities: &["JIM-54", "JIM-56"],
+        what: "elongation of a paste under a force that rises to 0.98 of its threshold within a second and stays: that of its spring",
+        settings: &[
+            TE,
+            PASTE,
+            LED_BY_FORCE,
+            r#"networks.sample.loads=[{ region = "lead", force = ["-9.8 * min(t, 1)^2 * (3 - 2 * min(t, 1))", 0, 0] }]"#,
+        ],
+        reading: Reading::component("stretch", 0).after(600),
+        reference: -0.009_909_710_187_463_004,
+        // places of a metre, after six hundred steps
+        tolerance: Tolerance::Relative(1e-11),
+        source: "EXP-44: solid below Qe; V' = V + Te (F - k q)/m from rest, nothing of which flows",
+        mutation: "networks.sample.links[0].law.stiffness=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "bingham_gives_no_heat_below",
+        capabilities: &["JIM-54", "JIM-56"],
+        what: "heat of the same: none",
+        settings: &[
+            TE,
+            PASTE,
+            LED_BY_FORCE,
+            r#"networks.sample.loads=[{ region = "lead", force = ["-9.8 * min(t, 1)^2 * (3 - 2 * min(t, 1))", 0, 0] }]"#,
+        ],
+        reading: Reading::last("heat").after(600),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "EXP-44: solid below Qe",
+        mutation: "networks.sample.links[0].law.traction=9.9",
+        ..PLASTIC
+    },
+    Case {
+        id: "bingham_flows_above",
+        capabilities: &["JIM-54", "JIM-56"],
+        what: "elongation of the same under a force that rises to 15 N: it flows at (Q - Qe)/z = 0.05 m/s, here after three seconds",
+        settings: &[
+            TE,
+            PASTE,
+            LED_BY_FORCE,
+            r#"networks.sample.loads=[{ region = "lead", force = ["-15 * min(t, 1)^2 * (3 - 2 * min(t, 1))", 0, 0] }]"#,
+        ],
+        reading: Reading::component("stretch", 0).after(900),
+        reference: -0.127_122_867_605_068_9,
+        tolerance: Tolerance::Relative(1e-11),
+        source: "EXP-44: stress ramp; f = (z k q + k Te Qe)/(k Te + z) beyond the threshold and V' = V + Te (F - f)/m from rest",
+        mutation: "networks.sample.links[0].law.viscosity=100.1",
+        ..PLASTIC
+    },
+    Case {
+        id: "saturation",
+        capabilities: &["JIM-16", "JIM-17"],
+        what: "a characteristic that saturates at 1.02 m, at 1.03 m: 500 N/m 0.02 m, and no more",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "piecewise_linear", thresholds = [0.98, 1.02], slopes = [0, -500, 0], zero = 1 }"#,
+        ],
+        reference: 10.0,
+        source: "specification §2.8.2: saturation",
+        mutation: "networks.sample.links[0].law.thresholds=[0.98, 1.021]",
+        ..PLASTIC
+    },
+    Case {
+        id: "curvature",
+        capabilities: &["JIM-16"],
+        what: "a spring whose force grows with the third power, at 0.98 m: k (-0.02 m)³",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "formula", push = "-k * (D - L0)^3", parameters = { k = "1e6" } }"#,
+        ],
+        reading: PULL.after(12),
+        reference: -8.0,
+        source: "specification §2.8.2: curvature",
+        mutation: "networks.sample.links[0].law.parameters.k=1000001",
+        ..PLASTIC
+    },
+    Case {
+        id: "dead_zone_is_dead",
+        capabilities: &["JIM-16", "JIM-17"],
+        what: "a characteristic with a dead zone of a centimetre each way, at its edge",
+        settings: &[DEAD_ZONE],
+        reading: PULL.after(2),
+        reference: 0.0,
+        source: "specification §2.8.2: dead zone and saturation",
+        mutation: "networks.sample.links[0].law.thresholds=[0.985, 0.99, 1.009, 1.02]",
+        ..PLASTIC
+    },
+    Case {
+        id: "dead_zone_then_slope",
+        capabilities: &["JIM-16", "JIM-17"],
+        what: "the same beyond its edge, at 1.015 m: 1000 N/m 5 mm",
+        settings: &[DEAD_ZONE],
+        reading: PULL.after(3),
+        reference: 5.0,
+        source: "specification §2.8.2: dead zone and saturation",
+        mutation: "networks.sample.links[0].law.thresholds=[0.985, 0.99, 1.009, 1.02]",
+        ..PLASTIC
+    },
+    Case {
+        id: "dead_zone_then_saturation",
+        capabilities: &["JIM-16", "JIM-17"],
+        what: "the same pushed to 0.98 m, where it has saturated: 1000 N/m 5 mm the other way",
+        settings: &[DEAD_ZONE],
+        reading: PULL.after(12),
+        reference: -5.0,
+        source: "specification §2.8.2: dead zone and saturation",
+        mutation: "networks.sample.links[0].law.thresholds=[0.984, 0.99, 1.01, 1.02]",
+        ..PLASTIC
+    },
+    Case {
+        id: "curved_loop_there",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "a curved characteristic that is another on the way back, at 1.02 m on the way there: k (0.02 m)³",
+        settings: &[CURVED_LOOP],
+        reading: PULL.after(4),
+        reference: 8.0,
+        source: "specification §2.8.2: curvature and hysteresis; loops need a memory",
+        mutation: "networks.sample.links[0].law.parameters.k=1000001",
+        ..PLASTIC
+    },
+    Case {
+        id: "curved_loop_back",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "the same on the way back: half of it",
+        settings: &[CURVED_LOOP],
+        reading: PULL.after(7),
+        reference: 4.0,
+        source: "specification §2.8.2: curvature and hysteresis; loops need a memory",
+        // without a memory of which way it goes
+        mutation: r#"networks.sample.links[0].law.transitions={ "loads -> unloads" = "V > 10" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "grip_holds",
+        capabilities: &["JIM-10"],
+        what: "a grip told to close at 55 ms holds the length of that moment, 1.025 m, at 1 m",
+        settings: &[GRIP],
+        reading: PULL.after(10),
+        reference: -25.0,
+        source: "specification §2.7: grip on command, 1 --CDX--> 2",
+        mutation: "networks.sample.links[0].law.parameters.k=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "grip_opens_again",
+        capabilities: &["JIM-10"],
+        what: "the same told to open at 105 ms lets go",
+        settings: &[GRIP],
+        reading: PULL.after(13),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification §2.7: grip on command, 2 --CDX--> 1",
+        mutation: r#"networks.sample.links[0].law.transitions={ "open -> closed" = "t > 0.055 and t < 0.105" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "cohesion_edge",
+        what: "a cohesive pair at the end of its steep piece, 0.95 m",
+        settings: &[
+            COHESION,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [0.05, 0, 0]] }",
+        ],
+        reference: -50.0,
+        // places of a metre, rounding times k
+        tolerance: Tolerance::Absolute(1e-11),
+        source: "specification §2.10: the values of the worked example",
+        mutation: "networks.sample.links[0].law.cohesion=1001",
+        ..CURVE
+    },
+    Case {
+        id: "cohesion_rest",
+        what: "a cohesive pair at its distance of 1 m",
+        settings: &[
+            COHESION,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [0, 0, 0]] }",
+        ],
+        reference: 0.0,
+        // places of a metre, rounding times k
+        tolerance: Tolerance::Absolute(1e-11),
+        source: "specification §2.10: the values of the worked example",
+        mutation: "networks.sample.links[0].law.distance=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "cohesion_fades",
+        what: "a cohesive pair half way to its range, 1.3 m",
+        settings: &[
+            COHESION,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.3, 0, 0]] }",
+        ],
+        reference: 50.0,
+        // places of a metre, rounding times k
+        tolerance: Tolerance::Absolute(1e-11),
+        source: "specification §2.10: the values of the worked example",
+        mutation: "networks.sample.links[0].law.cohesion=1001",
+        ..CURVE
+    },
+    Case {
+        id: "cohesion_ends",
+        what: "a cohesive pair at its range, 1.5 m",
+        settings: &[
+            COHESION,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.5, 0, 0]] }",
+        ],
+        reference: 0.0,
+        // places of a metre, rounding times k
+        tolerance: Tolerance::Absolute(1e-11),
+        source: "specification §2.10: the values of the worked example",
+        mutation: "networks.sample.links[0].law.range=1.501",
+        ..CURVE
+    },
+    Case {
+        id: "cohesion_is_gone",
+        what: "a cohesive pair 2 m apart, beyond its range",
+        settings: &[
+            COHESION,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-1, 0, 0]] }",
+        ],
+        reference: 0.0,
+        // places of a metre, rounding times k
+        tolerance: Tolerance::Absolute(1e-11),
+        source: "specification §2.10: the values of the worked example",
+        mutation: "networks.sample.links[0].law.range=2.1",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_1",
+        what: "strongest attraction of the family's member n = 1, at r0 (3/2)^(1/1)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 1 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.5, 0, 0]] }",
+        ],
+        reference: 0.2962962962962963,
+        source: "specification §2.10, the row of n = 1 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_2",
+        what: "strongest attraction of the family's member n = 2, at r0 (5/3)^(1/2)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 2 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.2909944487358056, 0, 0]] }",
+        ],
+        reference: 0.743612802471824,
+        source: "specification §2.10, the row of n = 2 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_3",
+        what: "strongest attraction of the family's member n = 3, at r0 (7/4)^(1/3)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 3 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.20507113208761507, 0, 0]] }",
+        ],
+        reference: 1.219336946987133,
+        source: "specification §2.10, the row of n = 3 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_4",
+        what: "strongest attraction of the family's member n = 4, at r0 (9/5)^(1/4)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 4 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.15829218528826905, 0, 0]] }",
+        ],
+        reference: 1.7053630051761988,
+        source: "specification §2.10, the row of n = 4 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_8",
+        what: "strongest attraction of the family's member n = 8, at r0 (17/9)^(1/8)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 8 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.08274403918250095, 0, 0]] }",
+        ],
+        reference: 3.681534162552235,
+        source: "specification §2.10, the row of n = 8 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest_12",
+        what: "strongest attraction of the family's member n = 12, at r0 (25/13)^(1/12)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 12 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.056006005488885346, 0, 0]] }",
+        ],
+        reference: 5.672695012020033,
+        source: "specification §2.10, the row of n = 12 in closed form",
+        mutation: "networks.sample.links[0].law.depth=1.001",
+        ..CURVE
+    },
+    Case {
+        id: "burger_fine_30",
+        what: "Burger's link after 30 of three hundred steps a second, each in a hundred",
+        settings: &[
+            FINE,
+            r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.2], offsets = [[0, 0, 0], [-0.02, 0, 0]] }",
+        ],
+        reading: PULL.after(3000),
+        reference: 7.934_315_25,
+        source: "specification §8.1, Burger with Te/100",
+        ..BURGER
+    },
+    Case {
+        id: "burger_fine_60",
+        what: "Burger's link after 60 of three hundred steps a second, each in a hundred",
+        settings: &[
+            FINE,
+            r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.2], offsets = [[0, 0, 0], [-0.02, 0, 0]] }",
+        ],
+        reading: PULL.after(6000),
+        reference: 12.974_998_23,
+        source: "specification §8.1, Burger with Te/100",
+        ..BURGER
+    },
+    Case {
+        id: "burger_fine_120",
+        what: "Burger's link after 120 of three hundred steps a second, each in a hundred",
+        settings: &[
+            FINE,
+            r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.2], offsets = [[0, 0, 0], [-0.02, 0, 0]] }",
+        ],
+        reading: PULL.after(12000),
+        reference: 8.335_960_51,
+        source: "specification §8.1, Burger with Te/100",
+        ..BURGER
+    },
+    Case {
+        id: "burger_fine_599",
+        what: "Burger's link after 599 of three hundred steps a second, each in a hundred",
+        settings: &[
+            FINE,
+            r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.2], offsets = [[0, 0, 0], [-0.02, 0, 0]] }",
+        ],
+        reading: PULL.after(59900),
+        reference: 1.087_852_15,
+        source: "specification §8.1, Burger with Te/100",
+        ..BURGER
     },
 ];
