@@ -42,31 +42,64 @@ pub fn plot_names(probe: &str) -> [String; 2] {
     [format!("{probe}.svg"), format!("{probe}.plot.png")]
 }
 
-/// A plot over time for each probe, `NAME.svg` and `NAME.plot.png`.
+/// A plot for each probe, over time or over the values of another, `NAME.svg` and `NAME.plot.png`.
 ///
 /// # Errors
 /// A file cannot be written.
 pub fn write_plots(folder: &mut OutputFolder, traces: &[Trace]) -> Result<(), OutputError> {
     for trace in traces.iter().filter(|trace| trace.times.len() > 1) {
-        let component = |c: usize| trace.values.iter().skip(c).step_by(trace.components).copied().collect();
-        let curves = match trace.components {
-            1 => vec![Curve::new("", trace.times.clone(), component(0))],
-            _ => ["x", "y", "z"]
-                .into_iter()
-                .enumerate()
-                .map(|(c, name)| Curve::new(name, trace.times.clone(), component(c)))
-                .collect(),
-        };
-        let plot = Plot {
-            title: trace.name.clone(),
-            x: Axis::new("time", "s"),
-            y: Axis::new(trace.quantity.replace('_', " "), trace.unit),
-            curves,
-            ..Plot::default()
-        };
         let [drawing, image] = plot_names(&trace.name);
+        let plot = plot_of(trace, traces);
         plot.write_svg(&folder.claim(&drawing)?)?;
         plot.to_image(2.0)?.write_png(&folder.claim(&image)?)?;
     }
     Ok(())
+}
+
+/// Components that share a name with those of what they are over are drawn over these.
+fn plot_of(trace: &Trace, traces: &[Trace]) -> Plot {
+    let over = trace.over.as_ref().and_then(|name| traces.iter().find(|other| other.name == *name));
+    let component = |of: &Trace, c: usize| of.values.iter().skip(c).step_by(of.components).copied().collect();
+    let abscissa = |c: usize| match over {
+        None => trace.times.clone(),
+        Some(over) => component(over, c.min(over.components - 1)),
+    };
+    let names: &[&str] = if trace.components == 1 { &[""] } else { &["x", "y", "z"] };
+    let curve = |(c, name): (usize, &&str)| Curve::new(*name, abscissa(c), component(trace, c));
+    let axis = |of: &Trace| Axis::new(of.quantity.replace('_', " "), of.unit);
+    Plot {
+        title: trace.name.clone(),
+        x: over.map_or_else(|| Axis::new("time", "s"), axis),
+        y: axis(trace),
+        curves: names.iter().enumerate().map(curve).collect(),
+        ..Plot::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trace(name: &str, over: Option<&str>, components: usize, values: &[f64]) -> Trace {
+        let times = (0..values.len() / components).map(|step| step as f64).collect();
+        let (name, over) = (name.to_owned(), over.map(str::to_owned));
+        Trace { name, unit: "N", quantity: "reaction", over, components, times, values: values.to_vec() }
+    }
+
+    /// Over time, over the components of a vector, and all over one number.
+    #[test]
+    fn plots_are_over_what_is_asked() {
+        let pull = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        let way = trace("way", None, 3, &[10.0, 20.0, 30.0, 40.0, 50.0, 60.0]);
+        let along = trace("along", None, 1, &[7.0, 8.0]);
+        let abscissas = |over: Option<&str>| -> Vec<Vec<f64>> {
+            let traces = [trace("pull", over, 3, &pull), way.clone(), along.clone()];
+            let plot = plot_of(&traces[0], &traces);
+            assert_eq!(plot.curves[1].y, [2.0, 5.0]);
+            plot.curves.iter().map(|curve| curve.x.clone()).collect()
+        };
+        assert_eq!(abscissas(None), [[0.0, 1.0]; 3]);
+        assert_eq!(abscissas(Some("way")), [[10.0, 40.0], [20.0, 50.0], [30.0, 60.0]]);
+        assert_eq!(abscissas(Some("along")), [[7.0, 8.0]; 3]);
+    }
 }

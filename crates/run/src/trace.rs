@@ -13,6 +13,8 @@ pub struct Trace {
     pub name: String,
     pub unit: &'static str,
     pub quantity: &'static str,
+    /// The trace that its plot is over; over time where `None`.
+    pub over: Option<String>,
     /// 1 or 3.
     pub components: usize,
     /// The date from which on extremes are taken [s].
@@ -42,6 +44,7 @@ impl Trace {
             name: probe.name.clone(),
             unit: probe.unit,
             quantity: probe.quantity,
+            over: probe.over.clone(),
             components: if probe.gives_vector() { 3 } else { 1 },
             since: probe.since,
             times: Vec::new(),

@@ -198,6 +198,33 @@ fn links_along_an_axis() {
     );
 }
 
+/// What a probe is drawn over is another of one number, or of as many; anything else is refused in words.
+#[test]
+fn probes_are_drawn_over_others() {
+    let over = |of: &str, name: &str| {
+        let probes = "[probes.one]\nbody = \"n\"\nregion = \"a\"\nquantity = \"velocity\"\ncomponent = \"x\"\n\
+                      [probes.all]\nbody = \"n\"\nquantity = \"velocity\"\n\
+                      [probes.way]\nbody = \"n\"\nquantity = \"displacement\"\n";
+        let head = format!("[probes.{of}]\n");
+        let probes = probes.replace(&head, &format!("{head}over = \"{name}\"\n"));
+        let text = format!("{HEAD}{TWO}{probes}");
+        read_text("net.toml", &text, Path::new("."), &[]).map_err(|faults| faults.to_string())
+    };
+    for (of, name) in [("all", "one"), ("all", "way")] {
+        let scene = over(of, name).unwrap();
+        let probe = scene.probes.iter().find(|probe| probe.name == of).unwrap();
+        assert_eq!(probe.over.as_deref(), Some(name));
+    }
+    let refused = |of: &str, name: &str, words: &[&str]| {
+        let message = over(of, name).err().expect("the probe is refused");
+        assert!(words.iter().all(|word| message.contains(word)), "{words:?} not in:\n{message}");
+    };
+    refused("one", "all", &["probes.one.over", "`all` gives a vector", "a `component`"]);
+    refused("one", "way", &["`way` gives a vector, and `one` a number"]);
+    refused("one", "one", &["no other probe `one`", "one of all, way"]);
+    refused("one", "al", &["no other probe `al`", "all"]);
+}
+
 /// The rate of a sound is that of the periods where it is a whole number; what cannot be heard is refused in words.
 #[test]
 fn sounds_are_probes_at_a_rate() {

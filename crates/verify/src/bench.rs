@@ -166,12 +166,12 @@ pub const BENCHES: &[Bench] = &[
     Bench {
         name: "springs_lattice_100k",
         what: "complete steps of a cubic lattice of 33 masses along each edge (104,544 damped springs) in motion [links/s]",
-        run: |effort| links::springs_lattice("springs_lattice_100k", 33, Some(118e6), effort),
+        run: |effort| links::springs_lattice("springs_lattice_100k", 33, 150e6, effort),
     },
     Bench {
         name: "springs_lattice_1m",
         what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
-        run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
+        run: |effort| links::springs_lattice("springs_lattice_1m", 70, 120e6, effort),
     },
     Bench {
         name: "string_audio",

@@ -63,6 +63,14 @@ impl ViewPoint {
     fn mean(&self, values: &[Vec3]) -> Vec3 {
         self.sources.iter().map(|(row, weight)| values[*row as usize] * *weight).sum()
     }
+
+    /// `F = w Jᵀ F'`
+    fn give_back(&self, derivative: Mat3, force: Vec3, out: &mut [Vec3]) {
+        let force = derivative.transpose() * force;
+        for (row, weight) in &self.sources {
+            out[*row as usize] += force * *weight;
+        }
+    }
 }
 
 /// Links whose ends are masses or points of view on masses.
@@ -121,10 +129,7 @@ impl ViewedLinks {
             out[*row as usize] += *force;
         }
         for ((point, force), derivative) in self.points.iter().zip(on_points).zip(&seen.derivatives) {
-            let force = derivative.transpose() * *force;
-            for (row, weight) in &point.sources {
-                out[*row as usize] += force * *weight;
-            }
+            point.give_back(*derivative, *force, out);
         }
     }
 
@@ -308,6 +313,39 @@ mod tests {
                 let (seen, back) = (force.dot(derivative * dx), (derivative.transpose() * force).dot(dx));
                 assert!((seen - back).abs() < 1e-12);
             }
+        }
+    }
+
+    /// What a mean of a hundred masses, and a frame that turns and drives, give back does the work that was done on what is seen:
+    /// the sum of `F dx` over all rows is `F' dx'`.
+    #[test]
+    fn sums_keep_work() {
+        let scatter = |i: usize, s: f64| {
+            Vec3::new((s * i as f64).sin(), (1.7 * s * i as f64).cos(), (0.3 * i as f64).sin())
+        };
+        let places: Vec<Vec3> = (0..100).map(|i| scatter(i, 0.9)).collect();
+        let moves: Vec<Vec3> = (0..100).map(|i| scatter(i, 2.3)).collect();
+        let weights: Vec<f64> = (0..100).map(|i| 1.0 + (i % 7) as f64).collect();
+        let whole: f64 = weights.iter().sum();
+        let sources: Vec<(u32, f64)> =
+            (0..100).zip(&weights).map(|(row, weight)| (row, weight / whole)).collect();
+        let turned = souple_math::exponential(Vec3::new(0.3, -0.2, 0.9));
+        // of a frame that masses carry: the place less theirs
+        let carried: Vec<(u32, f64)> = vec![(0, 1.0), (1, -0.5), (2, -0.5)];
+        let points = [
+            (sources.clone(), Map::Affine { matrix: Mat3::IDENTITY, offset: Vec3::ZERO }),
+            (sources, Map::Cylinder { axes: turned, origin: Vec3::new(1.0, 0.2, -0.3) }),
+            (carried, Map::Affine { matrix: turned, offset: Vec3::new(0.1, 0.2, 0.3) }),
+        ];
+        let force = Vec3::new(3.0, -1.0, 0.5);
+        for (sources, map) in points {
+            let point = ViewPoint { sources, map };
+            let derivative = point.map.derivative(point.mean(&places));
+            let seen = force.dot(derivative * point.mean(&moves));
+            let mut back = vec![Vec3::ZERO; 100];
+            point.give_back(derivative, force, &mut back);
+            let done: f64 = back.iter().zip(&moves).map(|(force, dx)| force.dot(*dx)).sum();
+            assert!((seen - done).abs() < 1e-12, "{seen} {done}");
         }
     }
 }

@@ -46,6 +46,8 @@ pub struct ProbeInfo {
     pub quantity: &'static str,
     /// The date from which on extremes are taken [s].
     pub since: f64,
+    /// The probe whose values its plot is over; over time where `None`.
+    pub over: Option<String>,
     rank: Rank,
     component: Option<Component>,
     reduction: Reduction,
@@ -240,6 +242,7 @@ impl ProbeInfo {
             component: probe.component,
             reduction: probe.reduction,
             target,
+            over: probe.over.clone(),
             against,
         })
     }

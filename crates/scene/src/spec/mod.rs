@@ -128,8 +128,10 @@ impl Spec {
         };
         reader.maybe_integer("format");
         let empty = Self::empty(source);
+        let written = reader.named("probes");
         let probes: Vec<Probe> =
-            reader.named("probes").into_iter().map(|(name, probe)| Probe::read(name, &probe)).collect();
+            written.iter().map(|(name, probe)| Probe::read(name.clone(), probe)).collect();
+        written.iter().zip(&probes).for_each(|((_, reader), probe)| probe.check_over(reader, &probes));
         let expects =
             reader.tables("expect").iter().filter_map(|expect| Expect::read(expect, &probes)).collect();
         let mut systems: Vec<SystemSpec> = reader

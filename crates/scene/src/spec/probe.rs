@@ -71,6 +71,11 @@ pub(crate) static PROBE: Keys = Keys::new(
             "the date from which on `min` and `max` of reports are taken",
         )
         .or(Value::Number(0.0)),
+        Key::new(
+            "over",
+            Shape::Text,
+            "another probe, whose values this one's are drawn over; over time where left out",
+        ),
     ],
 );
 
@@ -99,6 +104,8 @@ pub struct Probe {
     pub within: Option<f64>,
     /// The date from which on extremes are taken [s].
     pub since: f64,
+    /// The probe whose values its plot is over; over time where `None`.
+    pub over: Option<String>,
     pub site: Site,
 }
 
@@ -197,6 +204,7 @@ impl Probe {
             from: reader.maybe_text("from"),
             within: reader.maybe_number("within"),
             since: reader.number("since"),
+            over: reader.maybe_text("over"),
             site: reader.site(),
         }
     }
@@ -204,6 +212,28 @@ impl Probe {
     /// Whether a value is a number or a vector of three.
     pub fn rank(&self) -> Rank {
         if self.component.is_some() { Rank::Number } else { self.quantity.build.rank }
+    }
+
+    /// What a plot is over is another probe, of one number or of as many.
+    pub(crate) fn check_over(&self, reader: &Reader, probes: &[Self]) {
+        let Some(name) = &self.over else { return };
+        let refuse = |code: Code, message: String, expected: String| {
+            reader.log().add(code, &reader.site_of("over"), message, expected);
+        };
+        let others = || probes.iter().filter(|other| other.name != self.name);
+        match others().find(|other| other.name == *name) {
+            Some(other) if other.rank() == Rank::Vector && self.rank() == Rank::Number => {
+                let message = format!("probe `{name}` gives a vector, and `{}` a number", self.name);
+                refuse(Code::Conflict, message, "a probe with a `component`".to_owned());
+            }
+            Some(_) => {}
+            None => {
+                let known: Vec<&str> = others().map(|other| other.name.as_str()).collect();
+                let hint = crate::keys::did_you_mean(name, known.iter().copied());
+                let message = format!("there is no other probe `{name}`{hint}");
+                refuse(Code::UnknownName, message, format!("one of {}", known.join(", ")));
+            }
+        }
     }
 }
 

@@ -8,8 +8,15 @@ use super::{Effort, Figure, value_of};
 /// Steps in a period of the world.
 const STEPS_PER_PERIOD: usize = 10;
 
-/// Steps/s that are wanted of 100,000 balls on two cores.
+/// Steps/s that are wanted of 100,000 balls, on two cores.
 const WANTED: f64 = 60.0;
+const CORES: usize = 2;
+
+/// Bytes that a ball may take of memory: a gigabyte for a million of them.
+const BYTES_OF_BALL: f64 = 1000.0;
+
+/// Of the time of a step by the number of balls: linear, and a twentieth for caches that no longer hold them.
+const EXPONENT: f64 = 1.05;
 
 /// `0.5 exp(-π h/√(1 - h²))` of a collision with a damping ratio of 0.1 [m/s].
 const REBOUND: f64 = 0.364_623_807_143_835_47;
@@ -30,18 +37,22 @@ fn timing(settings: &[String], samples: usize) -> Timing<'_> {
 }
 
 pub fn balls_100k(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
-    let (settings, held) = (heap(5.2), held(Some(WANTED))?);
+    let (settings, on_two, on_others) = (heap(5.2), held(Some(WANTED))?, held(None)?);
     let timed = timing(&settings, effort.choose(3, 10)).run()?;
+    let held = |timed: &Timed| if timed.threads == CORES { &on_two } else { &on_others };
     Ok(timed
         .into_iter()
-        .map(|timed| timed.in_parts(STEPS_PER_PERIOD).steps_per_second(name, &held))
+        .map(|timed| {
+            let held = held(&timed);
+            timed.in_parts(STEPS_PER_PERIOD).steps_per_second(name, held)
+        })
         .collect())
 }
 
 /// A thousand balls to a million, with all threads.
 pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let radii: &[(&str, f64)] = &[("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", 11.3)];
-    let held = held(None)?;
+    let [held, memory, exponent] = [held(None)?, held(Some(BYTES_OF_BALL))?, held(Some(EXPONENT))?];
     let mut figures = Vec::new();
     let mut points = Vec::new();
     for (count, radius) in &radii[..effort.choose(3, 4)] {
@@ -54,9 +65,14 @@ pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         let figure = timed.figure(&format!("{name}_{count}"), of_ball, &held, ("ns/ball and step", false));
         let own = timed.bytes as f64 / balls;
         figures.push(figure);
-        figures.push(timed.figure(&format!("{name}_{count}_memory"), vec![own], &held, ("B/ball", false)));
+        figures.push(timed.figure(&format!("{name}_{count}_memory"), vec![own], &memory, ("B/ball", false)));
         if let ("1m", slope) = (*count, slope(&points)) {
-            figures.push(timed.figure(&format!("{name}_exponent"), vec![slope], &held, ("of balls", false)));
+            figures.push(timed.figure(
+                &format!("{name}_exponent"),
+                vec![slope],
+                &exponent,
+                ("of balls", false),
+            ));
         }
     }
     Ok(figures)

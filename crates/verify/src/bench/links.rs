@@ -33,19 +33,14 @@ fn lattice(n: usize) -> Vec<String> {
     ]
 }
 
-pub fn springs_lattice(
-    name: &str,
-    n: usize,
-    peer: Option<f64>,
-    effort: Effort,
-) -> Result<Vec<Figure>, String> {
+pub fn springs_lattice(name: &str, n: usize, wanted: f64, effort: Effort) -> Result<Vec<Figure>, String> {
     // momentum is kept to rounding, whatever the links do
     let small = lattice(11);
     let momentum = |steps| value_of(scene("network_lattice", &small)?, steps, "momentum", 0);
     let held = Held {
         error: (momentum(100)? / momentum(1)? - 1.0).abs(),
         error_of: "momentum after 1000 steps of 11 masses along each edge".to_owned(),
-        baseline: peer,
+        baseline: Some(wanted),
     };
     let timing = Timing {
         scene: "network_lattice",

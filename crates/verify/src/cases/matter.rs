@@ -997,17 +997,6 @@ pub(super) const CASES: &[Case] = &[
         ..SQUARE
     },
     Case {
-        id: "plastic_square_springs_not",
-        what: "its area six seconds later over that three seconds after it was let go, a second and a half after it struck: no spring back",
-        reading: Reading::last("area").taking(Statistic::LastOver(300)),
-        reference: 1.0,
-        // an elastic one is within a percent only once it has stopped swinging
-        tolerance: Tolerance::Relative(0.01),
-        source: "EXP-26: no spring back",
-        mutation: r#"networks.square.links[0].law={ name = "spring", stiffness = 10000 }"#,
-        ..SQUARE
-    },
-    Case {
         id: "dermis_keeps_area",
         capabilities: &["JIM-34", "JIM-35", "JIM-89"],
         what: "area of the ring of balls around an elastic kernel after its fall, over that before",

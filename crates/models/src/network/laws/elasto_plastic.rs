@@ -154,3 +154,53 @@ pub const ENTRY: LinkEntry = LinkEntry {
         })))
     },
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Length, tension, and `S`, `S1`, `S2` after it: k = 1000, k' = 250, Qe = 10 N both ways, S = 1, independent hardening.
+    const TABLE: [[f64; 5]; 17] = [
+        [1.000, 0.0, 1.0, 0.01, -0.01],
+        [1.005, 5.0, 1.0, 0.01, -0.01],
+        [1.010, 10.0, 1.0, 0.01, -0.01],
+        [1.015, 11.0, 1.004, 0.011, -0.01],
+        [1.020, 12.0, 1.008, 0.012, -0.01],
+        [1.030, 14.0, 1.016, 0.014, -0.01],
+        [1.025, 9.0, 1.016, 0.014, -0.01],
+        [1.020, 4.0, 1.016, 0.014, -0.01],
+        [1.015, -1.0, 1.016, 0.014, -0.01],
+        [1.010, -6.0, 1.016, 0.014, -0.01],
+        [1.000, -11.2, 1.0112, 0.014, -0.0112],
+        [0.990, -13.2, 1.0032, 0.014, -0.0132],
+        [0.980, -15.2, 0.9952, 0.014, -0.0152],
+        [0.990, -5.2, 0.9952, 0.014, -0.0152],
+        [1.000, 4.8, 0.9952, 0.014, -0.0152],
+        [1.010, 14.16, 0.99584, 0.01416, -0.0152],
+        [1.030, 18.16, 1.01184, 0.01816, -0.0152],
+    ];
+
+    /// The loop of the specification's §8.1, with what the link remembers on the way.
+    #[test]
+    fn loop_of_the_table() {
+        let law = ElastoPlastic {
+            elastic: 1000.0,
+            plastic: 200.0,
+            yields: [10.0, -10.0],
+            tears: f64::MAX,
+            hardening: Hardening::Independent,
+        };
+        let mut memory = [0.0; MEMORY];
+        law.begin(1.0, 1.0, &mut memory[..4]);
+        let mut before = 1.0;
+        for [length, tension, rest, traction, compression] in TABLE {
+            let found = -law.respond(&Reach { length, before, rest: 1.0 }, &mut memory).push;
+            // lengths of a metre round to 2e-16 m, sixteen times over, in forces times 1000 N/m
+            assert!((found - tension).abs() < 1e-12, "{found} N at {length} m");
+            for (found, expected) in memory.iter().zip([rest, traction, compression]) {
+                assert!((found - expected).abs() < 1e-14, "{memory:?} at {length} m");
+            }
+            before = length;
+        }
+    }
+}

@@ -197,3 +197,54 @@ pub const BURGER: LinkEntry = LinkEntry {
         Ok(Box::new(InLanes(Burger::new(solid, fluid, number("stiffness"), making.timestep))))
     },
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TE: f64 = 1.0 / 300.0;
+
+    /// Tensions along a course of lengths that goes to and fro.
+    fn tensions(law: &Bingham) -> Vec<(f64, f64)> {
+        let mut memory = [0.0; MEMORY];
+        law.begin(1.0, 1.0, &mut memory[..law.memory_len()]);
+        let mut before = 1.0;
+        let step = |n: i32| {
+            let length = 1.0 + 0.05 * (0.02 * f64::from(n)).sin() + 0.01 * (0.31 * f64::from(n)).sin();
+            let reach = Reach { length, before, rest: 1.0 };
+            before = length;
+            (length, -law.respond(&reach, &mut memory).push)
+        };
+        (1..=600).map(step).collect()
+    }
+
+    /// Without viscosity a paste is elastic and perfectly plastic: `f = clamp(k (D - S), ±Qe)`, `S = D - f/k`.
+    #[test]
+    fn paste_without_viscosity_is_plastic() {
+        let law = Bingham { stiffness: 1000.0, viscosity: 0.0, yields: [10.0, -10.0], timestep: TE };
+        let mut rest = 1.0;
+        for (length, found) in tensions(&law) {
+            let elastic = 1000.0 * (length - rest);
+            let expected = elastic.clamp(-10.0, 10.0);
+            if expected != elastic {
+                rest = length - expected / 1000.0;
+            }
+            assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+        }
+    }
+
+    /// Without thresholds it is Maxwell's fluid: `f = A (D - D^r) + B f^r`.
+    #[test]
+    fn paste_without_thresholds_is_maxwells() {
+        let (k, z) = (1000.0, 100.0);
+        let law = Bingham { stiffness: k, viscosity: z, yields: [0.0, 0.0], timestep: TE };
+        let (a, b) = (k * z / (k * TE + z), z / (k * TE + z));
+        let (mut before, mut force) = (1.0, 0.0);
+        for (length, found) in tensions(&law) {
+            force = a * (length - before) + b * force;
+            before = length;
+            // a metre rounds to 2e-16 m, times k, and 1/(1 - B) = 31 steps remember it
+            assert!((found - force).abs() < 1e-11, "{found} for {force}");
+        }
+    }
+}
