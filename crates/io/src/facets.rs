@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 use souple_mesh::{
-    Cell, CutPolygon, ElementKind, MOST_POLYGON_CORNERS, Mesh, Order, cut_polygon, facet_triangles,
+    Cell, CutPolygon, ElementKind, MOST_POLYGON_CORNERS, Mesh, cut_polygon, facet_triangles,
     polygon_triangles,
 };
 use souple_table::in_number;
@@ -46,12 +46,10 @@ impl Facet {
 
     /// A facet as it stands, a curved one as triangles.
     fn of(facet: Cell<'_>) -> Vec<Self> {
-        match facet.kind.order() {
-            Order::Linear => vec![Self::new(facet.nodes)],
-            Order::Quadratic => {
-                facet_triangles(facet.kind, facet.nodes).iter().map(|corners| Self::new(corners)).collect()
-            }
+        if facet.kind.is_linear() {
+            return vec![Self::new(facet.nodes)];
         }
+        facet_triangles(facet.kind, facet.nodes).iter().map(|corners| Self::new(corners)).collect()
     }
 
     pub fn corners(&self) -> &[u32] {

@@ -129,7 +129,7 @@ impl Holds {
             lose(quadrilaterals(&mesh.facet_blocks), "quadrilaterals: each is cut into two triangles");
         }
         if self.is_surface() {
-            let is_curved = |block: &&CellBlock| block.kind.order() == souple_mesh::Order::Quadratic;
+            let is_curved = |block: &&CellBlock| !block.kind.is_linear();
             let curved: usize = mesh.facet_blocks.iter().filter(is_curved).map(CellBlock::len).sum();
             lose(curved, "curved facets: each is cut into triangles at the middles of its sides");
         }

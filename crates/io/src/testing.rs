@@ -67,7 +67,7 @@ pub(crate) fn mixed_mesh() -> Mesh {
 pub(crate) fn quadratic_mesh() -> Mesh {
     let mut linear = mixed_mesh();
     linear.groups.clear();
-    linear.raised(|[a, b]| (a + b) * 0.5 + Vec3::new(0.01, 1.0 / 300.0, -0.02))
+    linear.raised(souple_mesh::NodePlace::Edge, |[a, b]| (a + b) * 0.5 + Vec3::new(0.01, 1.0 / 300.0, -0.02))
 }
 
 /// Cut at every byte, and with bits of every byte flipped: an answer or a fault, never a panic, and what is

@@ -6,7 +6,7 @@
 use souple_math::Vec3;
 
 use crate::polygon::{fan, polygon_triangles};
-use crate::{Cell, ElementKind, Mesh, MeshError, Order, TriangleSurface};
+use crate::{Cell, ElementKind, Mesh, MeshError, TriangleSurface};
 
 /// A face that belongs to one cell only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,7 +121,7 @@ impl Mesh {
     pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         self.visit_boundary(&mut |_, kind, nodes| {
-            let (corners, middles) = nodes.split_at(kind.corner_count().min(nodes.len()));
+            let [corners, middles, _] = kind.by_place(nodes);
             let n = corners.len();
             for k in 0..n {
                 let ends = [corners[k], corners[(k + 1) % n]];
@@ -157,9 +157,10 @@ impl Mesh {
         let mut triangles = Vec::new();
         let mut facets = Vec::new();
         for (facet, view) in self.facets().enumerate() {
-            let cut = match view.kind.order() {
-                Order::Linear => polygon_triangles(view.nodes, |node| self.points[node as usize]),
-                Order::Quadratic => facet_triangles(view.kind, view.nodes),
+            let cut = if view.kind.is_linear() {
+                polygon_triangles(view.nodes, |node| self.points[node as usize])
+            } else {
+                facet_triangles(view.kind, view.nodes)
             };
             for triangle in cut {
                 triangles.push(triangle);
@@ -175,9 +176,10 @@ impl Mesh {
 pub fn node_measures(kind: ElementKind, nodes: &[Vec3]) -> Vec<f64> {
     let mut measures = vec![0.0; nodes.len()];
     // exact where the face is flat and straight; the area of a warped one is no polynomial
-    let rule = match kind.order() {
-        Order::Linear => kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule()),
-        Order::Quadratic => kind.mass_rule(),
+    let rule = if kind.is_linear() {
+        kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule())
+    } else {
+        kind.mass_rule()
     };
     for point in &rule.points {
         let measure = kind.jacobian(nodes, point.position).determinant() * point.weight;
@@ -188,9 +190,9 @@ pub fn node_measures(kind: ElementKind, nodes: &[Vec3]) -> Vec<f64> {
 }
 
 /// A face as triangles: a triangle or quadrilateral around its corner of lowest number; of a curved one, the corners
-/// cut off at the middles of the sides, and what is left between those.
+/// cut off at the middles of the sides, and what is left between those; one with a node in its middle around that.
 pub fn facet_triangles(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
-    let (corners, middles) = nodes.split_at(kind.corner_count().min(nodes.len()));
+    let [corners, middles, inside] = kind.by_place(nodes);
     if kind.dimension() != 2 {
         return Vec::new();
     }
@@ -198,6 +200,10 @@ pub fn facet_triangles(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
         return around_lowest(corners).collect();
     }
     let n = corners.len();
+    if let [centre] = *inside {
+        let halves = (0..n).flat_map(|k| [[corners[k], middles[k]], [middles[k], corners[(k + 1) % n]]]);
+        return halves.map(|[from, to]| [centre, from, to]).collect();
+    }
     let cut_off = (0..n).map(|k| [middles[(k + n - 1) % n], corners[k], middles[k]]);
     cut_off.chain(around_lowest(middles)).collect()
 }

@@ -37,7 +37,7 @@ mod winding;
 
 pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, facet_triangles, node_measures};
 pub use conformity::{Conformity, HangingPoint};
-pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues, Order};
+pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodePlace, NodeValues};
 pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};
 pub use locate::{CellLocator, Location};

@@ -4,9 +4,7 @@
 
 use souple_math::Vec3;
 
-use crate::{
-    Aabb, AabbTree, ElementKind, MAX_NODES, Mesh, Order, TriangleSurface, closest_point_on_triangle,
-};
+use crate::{Aabb, AabbTree, ElementKind, MAX_NODES, Mesh, TriangleSurface, closest_point_on_triangle};
 
 /// A point carried by a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +49,7 @@ impl<'a> CellLocator<'a> {
             let bounds = Aabb::of(nodes.iter().map(|node| mesh.points[*node as usize]));
             // faces of linear cells bulge, but never out of the box of their nodes; rounding does. A curved edge leaves it by
             // an eighth of its extent at most, a face by twice that, as long as its determinant keeps its sign
-            let margin = if kind.order() == Order::Linear { 1e-9 } else { 0.25 };
+            let margin = if kind.is_linear() { 1e-9 } else { 0.25 };
             bounds.grown(margin * bounds.diagonal())
         };
         let boxes: Vec<Aabb> = mesh.cells().map(|cell| bounds(cell.kind, cell.nodes)).collect();

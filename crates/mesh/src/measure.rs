@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 
 use crate::sets::Sets;
-use crate::{Cell, ElementKind, MAX_NODES, Mesh, Order, QuadratureRule};
+use crate::{Cell, ElementKind, MAX_NODES, Mesh, QuadratureRule};
 
 /// An axis-aligned box around points [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,10 +178,7 @@ impl Mesh {
 
 /// Curved cells have determinants of a higher degree than their strains.
 pub(crate) fn volume_rule(kind: ElementKind) -> &'static QuadratureRule {
-    match kind.order() {
-        Order::Linear => kind.default_rule(),
-        Order::Quadratic => kind.mass_rule(),
-    }
+    if kind.is_linear() { kind.default_rule() } else { kind.mass_rule() }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use souple_math::Vec3;
 
 use crate::measure::volume_rule;
-use crate::{Cell, ElementKind, Face, MAX_NODES, Mesh, Order, QuadraturePoint};
+use crate::{Cell, ElementKind, Face, MAX_NODES, Mesh, QuadraturePoint};
 
 /// Shape of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,7 +175,7 @@ fn area_vector(face: &Face, positions: &[Vec3]) -> Vec3 {
 
 /// Least ratio of the Jacobian determinant to that of the cell of the same corners and straight edges.
 fn bending(kind: ElementKind, positions: &[Vec3]) -> f64 {
-    if kind.order() == Order::Linear {
+    if kind.is_linear() {
         return 1.0;
     }
     let (straight, corners) = (kind.corners(), &positions[..kind.corner_count()]);
@@ -270,7 +270,8 @@ mod tests {
             (ElementKind::Prism6, std::f64::consts::FRAC_PI_3),
             (ElementKind::Pyramid5, (1.0_f64 / 3.0).sqrt().acos()),
         ];
-        let quadratic = expected.map(|(kind, smallest)| (kind.of_order(Order::Quadratic), smallest));
+        let quadratic =
+            expected.map(|(kind, smallest)| (kind.with_middles(crate::NodePlace::Edge), smallest));
         for (kind, smallest) in expected.into_iter().chain(quadratic) {
             let points = kind.regular();
             for [a, b] in kind.edges() {

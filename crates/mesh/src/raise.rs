@@ -1,56 +1,82 @@
-//! Linear meshes raised to quadratic ones.
+//! Linear meshes raised to those with nodes between the corners.
 
 use std::collections::BTreeMap;
 
 use souple_math::Vec3;
 
-use crate::{CellBlock, ElementKind, Mesh, Order};
+use crate::{CellBlock, ElementKind, Mesh, NodePlace};
 
 impl Mesh {
-    /// The mesh of quadratic cells with the same corners: one point more in the middle of each edge, shared by all
-    /// cells and facets of that edge, after the points there were and in the order of their edges' ends. A point joins
-    /// the groups that hold both ends of its edge. Cells that are quadratic already keep their nodes.
+    /// The mesh of cells with the same corners and nodes in the middles of edges, and of faces and cells up to `most`, where there is
+    /// such an element ([`ElementKind::with_middles`]). Points are shared by all cells and facets around them, and follow those there
+    /// were: middles of edges in the order of their ends, then of faces, then of cells. A point joins the groups that hold all corners of
+    /// the part it is the middle of. Cells that are not linear keep their nodes.
     ///
-    /// Edges are straight; `place` gives a middle from its edge's ends, for those who know the curve.
-    pub fn raised(&self, place: impl Fn([Vec3; 2]) -> Vec3) -> Self {
-        let mut edges: Vec<[u32; 2]> = Vec::new();
-        for block in self.blocks.iter().chain(&self.facet_blocks).filter(|block| is_linear(block.kind)) {
+    /// Edges are straight; `place` gives a middle from its edge's ends, for those who know the curve. Middles of faces and cells lie where
+    /// the curves around them put them: where the element with nodes on edges alone has its middle.
+    pub fn raised(&self, most: NodePlace, place: impl Fn([Vec3; 2]) -> Vec3) -> Self {
+        let linear = || self.blocks.iter().chain(&self.facet_blocks).filter(|block| block.kind.is_linear());
+        let mut parts: Vec<Part> = Vec::new();
+        for block in linear() {
+            let kind = block.kind.with_middles(most);
+            parts.extend(block.cells().flat_map(|nodes| middles(kind, nodes)));
+        }
+        parts.sort_unstable();
+        parts.dedup();
+        let first = self.points.len();
+        let number = |part: &Part| {
+            let at = parts.binary_search(part).unwrap_or_else(|_| unreachable!("collected above"));
+            (first + at) as u32
+        };
+        let mut points = self.points.clone();
+        let of_edges = parts.partition_point(|part| part.0 == NodePlace::Edge);
+        points.extend(
+            parts[..of_edges]
+                .iter()
+                .map(|Part(_, [a, b, ..])| place([a, b].map(|end| self.points[*end as usize]))),
+        );
+        points.resize(first + parts.len(), Vec3::ZERO);
+        let mut is_placed = vec![false; parts.len() - of_edges];
+        for block in linear().filter(|_| of_edges < parts.len()) {
+            let (kind, curved) = (block.kind.with_middles(most), block.kind.with_middles(NodePlace::Edge));
             for nodes in block.cells() {
-                edges.extend(block.kind.edges().iter().map(|edge| ends(nodes, *edge)));
+                let around: Vec<Vec3> = (nodes.iter().copied())
+                    .chain(middles(curved, nodes).map(|part| number(&part)))
+                    .map(|point| points[point as usize])
+                    .collect();
+                for (part, xi) in middles(kind, nodes).zip(&kind.element().nodes[nodes.len()..]) {
+                    let point = number(&part) as usize;
+                    // the first cell places what it shares: others would by the same curves, to rounding
+                    if part.0 > NodePlace::Edge
+                        && !std::mem::replace(&mut is_placed[point - first - of_edges], true)
+                    {
+                        points[point] = curved.position(&around, Vec3::from_array(*xi));
+                    }
+                }
             }
         }
-        edges.sort_unstable();
-        edges.dedup();
-        let first = self.points.len() as u32;
-        let middle = |edge: [u32; 2]| {
-            let at = edges.binary_search(&edge).unwrap_or_else(|_| unreachable!("collected above"));
-            first + at as u32
-        };
         let raise = |block: &CellBlock| {
-            if !is_linear(block.kind) {
+            if !block.kind.is_linear() {
                 return block.clone();
             }
+            let kind = block.kind.with_middles(most);
             let with_middles = |nodes: &[u32]| {
-                let middles = block.kind.edges().iter().map(|edge| middle(ends(nodes, *edge)));
+                let middles = middles(kind, nodes).map(|part| number(&part));
                 nodes.iter().copied().chain(middles).collect::<Vec<_>>()
             };
-            CellBlock {
-                kind: block.kind.of_order(Order::Quadratic),
-                nodes: block.cells().flat_map(with_middles).collect(),
-            }
+            CellBlock { kind, nodes: block.cells().flat_map(with_middles).collect() }
         };
-        let middles = edges.iter().map(|edge| place(edge.map(|end| self.points[end as usize])));
         let mut groups = self.groups.clone();
         for group in groups.values_mut() {
             let holds = |end: &u32| group.points.binary_search(end).is_ok();
             let joined: Vec<u32> =
-                edges.iter().filter(|edge| edge.iter().all(holds)).map(|edge| middle(*edge)).collect();
+                parts.iter().filter(|part| part.corners().iter().all(holds)).map(number).collect();
             group.points.extend(joined);
         }
         Self {
-            points: self.points.iter().copied().chain(middles).collect(),
             blocks: self.blocks.iter().map(raise).collect(),
             facet_blocks: self.facet_blocks.iter().map(raise).collect(),
+            points,
             groups,
         }
     }
@@ -100,15 +126,30 @@ impl Mesh {
     }
 }
 
-fn is_linear(kind: ElementKind) -> bool {
-    kind.order() == Order::Linear
+/// What has a point in its middle: what it is, and the points at its corners, ascending and padded.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Part(NodePlace, [u32; MOST_CORNERS]);
+
+/// Of a hexahedron.
+const MOST_CORNERS: usize = 8;
+const NO_POINT: u32 = u32::MAX;
+
+impl Part {
+    fn corners(&self) -> &[u32] {
+        &self.1[..self.1.partition_point(|corner| *corner != NO_POINT)]
+    }
 }
 
-/// Points at the ends of an edge of a cell, ascending.
-fn ends(nodes: &[u32], [a, b]: [u8; 2]) -> [u32; 2] {
-    let mut ends = [nodes[usize::from(a)], nodes[usize::from(b)]];
-    ends.sort_unstable();
-    ends
+/// The parts of a cell in whose middles the nodes of an element beyond its corners are.
+fn middles(kind: ElementKind, corners: &[u32]) -> impl Iterator<Item = Part> + '_ {
+    kind.middles().iter().enumerate().map(move |(middle, part)| {
+        let mut own = [NO_POINT; MOST_CORNERS];
+        for (slot, corner) in own.iter_mut().zip(part) {
+            *slot = corners[usize::from(*corner)];
+        }
+        own.sort_unstable();
+        Part(kind.place(kind.corner_count() + middle), own)
+    })
 }
 
 #[cfg(test)]
@@ -127,7 +168,7 @@ mod tests {
                 .with("cells", Value::Vector([4.0, 2.0, 2.0]))
                 .with("element", Value::Text(element));
             let linear = generate("box", values).unwrap();
-            let mut mesh = linear.raised(|[a, b]| (a + b) * 0.5);
+            let mut mesh = linear.raised(NodePlace::Edge, |[a, b]| (a + b) * 0.5);
             mesh.validate().unwrap();
             mesh.faces().conforming().unwrap();
             assert_eq!(mesh.faces().boundary, linear.faces().boundary, "{element}");
@@ -137,7 +178,7 @@ mod tests {
             let on_side = mesh.groups["x_min"].points.len();
             assert!(on_side == 21 || on_side == 25, "{element}: {on_side}");
             assert!(mesh.groups["x_min"].points.iter().all(|point| mesh.points[*point as usize].x == 0.0));
-            assert_eq!(mesh.raised(|_| unreachable!("no linear cell is left")), mesh);
+            assert_eq!(mesh.raised(NodePlace::Edge, |_| unreachable!("no linear cell is left")), mesh);
         }
     }
 
@@ -149,7 +190,7 @@ mod tests {
             .with("cells", Value::Vector([2.0, 1.0, 1.0]))
             .with("element", Value::Text("hex8"));
         let linear = generate("box", values).unwrap();
-        let mut mesh = linear.raised(|[a, b]| (a + b) * 0.5);
+        let mut mesh = linear.raised(NodePlace::Edge, |[a, b]| (a + b) * 0.5);
         let corners = linear.blocks[0].nodes[8..].to_vec();
         mesh.blocks[0].nodes.truncate(20);
         mesh.push_cell(ElementKind::Hex8, &corners);

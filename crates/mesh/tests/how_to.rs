@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_mesh::{ElementKind, Order};
+use souple_mesh::{ElementKind, NodePlace};
 
 /// Every text in Rust on the page stands so in the file of the element or in the table's, and the element it makes is
 /// there.
@@ -21,6 +21,6 @@ fn the_page_shows_what_is_compiled() {
         assert!(element.contains(block) || table.contains(block), "not in the program:\n{block}");
     }
     let triangle = ElementKind::from_name("tri6").unwrap();
-    let found = (triangle.node_count(), triangle.order(), triangle.corners());
-    assert_eq!(found, (6, Order::Quadratic, ElementKind::Tri3));
+    let found = (triangle.node_count(), triangle.last_place(), triangle.corners());
+    assert_eq!(found, (6, NodePlace::Edge, ElementKind::Tri3));
 }

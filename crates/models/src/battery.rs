@@ -13,7 +13,7 @@ use souple_formal::graph::{Expr, Graph};
 use souple_formal::law::{EnergyLaw, LawParameter, Strain};
 use souple_formal::tape::{BATCH, Part, Tape};
 use souple_math::{Vec3, exponential};
-use souple_mesh::{ElementKind, Mesh, Order, QuadratureRule};
+use souple_mesh::{ElementKind, Mesh, QuadratureRule};
 use souple_table::{Value, Values};
 
 use crate::derive::{MapKind, element_data};
@@ -158,7 +158,7 @@ enum Form {
 fn forms(kind: ElementKind, rule: &QuadratureRule) -> Vec<(MapKind, Form, Cut)> {
     let mut forms = vec![(MapKind::General, Form::Tensors, Cut::NONE)];
     // written out, elements of second order are as long as a book
-    let is_usual = rule.name == kind.default_rule().name && kind.element().order == Order::Linear;
+    let is_usual = rule.name == kind.default_rule().name && kind.is_linear();
     if is_usual {
         forms.push((MapKind::General, Form::Numbers, Cut::NONE));
         forms.push((MapKind::General, Form::Tensors, Cut::ALL));

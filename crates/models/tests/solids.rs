@@ -13,7 +13,7 @@ use souple_engine::{
     UnknownKind,
 };
 use souple_math::{Mat3, Vec3, exponential};
-use souple_mesh::{ElementKind, Mesh, QuadratureRule};
+use souple_mesh::{ElementKind, Mesh, NodePlace, QuadratureRule};
 use souple_models::materials::{self, AnyLaw, Material};
 use souple_models::solids::{
     Quadrature, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
@@ -595,7 +595,7 @@ fn patch_test_is_exact() {
             let mut mesh = bar([1.0, 1.0, 1.0], cells, element);
             distort(&mut mesh.points, 0.02);
             if is_quadratic {
-                mesh = mesh.raised(|[a, b]| (a + b) * 0.5);
+                mesh = mesh.raised(NodePlace::Edge, |[a, b]| (a + b) * 0.5);
             }
             if is_curved {
                 distort(&mut mesh.points, 0.01);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles, polygon_triangles};
+use souple_mesh::{Cell, ElementKind, Mesh, facet_triangles, polygon_triangles};
 
 use super::surface::{Paint, Surface};
 use super::tubes::along;
@@ -191,18 +191,21 @@ impl MeshSurface {
             }
             return;
         }
-        if kind.order() == Order::Linear {
+        if kind.is_linear() {
             self.push(mesh, nodes, cell, numbers);
             return;
         }
-        let corners = kind.corner_count();
-        let is_corner = |node: u32| nodes[..corners].contains(&node);
+        let [corners, middles, _] = kind.by_place(nodes);
         for triangle in facet_triangles(kind, nodes) {
             let first = self.surface.triangles.len();
             self.push(mesh, &triangle, cell, numbers);
             for edges in &mut self.surface.edges[first..] {
-                // half a side of the face runs from a corner to a middle
-                *edges = [0, 1, 2].map(|k| is_corner(triangle[k]) != is_corner(triangle[(k + 1) % 3]));
+                // half a side of the face runs between a corner and the middle of an edge
+                *edges = [0, 1, 2].map(|k| {
+                    let [a, b] = [triangle[k], triangle[(k + 1) % 3]];
+                    let is_half = |a: u32, b: u32| corners.contains(&a) && middles.contains(&b);
+                    is_half(a, b) || is_half(b, a)
+                });
             }
         }
     }
@@ -343,9 +346,10 @@ impl Clipper {
             .map(|face| cell.face_nodes(face))
             .map(|(kind, nodes)| (kind, nodes.collect()))
             .collect();
-        let apex = match cell.kind.order() {
-            Order::Linear => cell.nodes.iter().copied().min(),
-            _ => self.point_within(cell, &faces),
+        let apex = if cell.kind.is_linear() {
+            cell.nodes.iter().copied().min()
+        } else {
+            self.point_within(cell, &faces)
         };
         let Some(apex) = apex else { return };
         for (kind, nodes) in faces.iter().filter(|(_, nodes)| !nodes.contains(&apex)) {

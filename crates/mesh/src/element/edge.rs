@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
 use crate::quadrature::{RuleDefinition, line};
 
 const NODES: [[f64; 3]; 2] = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
@@ -18,7 +18,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static EDGE2_DATA: Element = Element {
     kind: ElementKind::Edge2,
-    order: Order::Linear,
     corners: ElementKind::Edge2,
     dimension: 1,
     nodes: &NODES,
@@ -49,7 +48,6 @@ pub(super) static EDGE2: ElementEntry = ElementEntry {
 
 static EDGE3_DATA: Element = Element {
     kind: ElementKind::Edge3,
-    order: Order::Quadratic,
     corners: ElementKind::Edge2,
     dimension: 1,
     nodes: &with_middles::<2, 1, 3>(&NODES, &EDGES),

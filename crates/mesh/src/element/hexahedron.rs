@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
 use crate::quadrature::{RuleDefinition, hexahedron};
 
 const NODES: [[f64; 3]; 8] = [
@@ -40,7 +40,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static HEX8_DATA: Element = Element {
     kind: ElementKind::Hex8,
-    order: Order::Linear,
     corners: ElementKind::Hex8,
     dimension: 3,
     nodes: &NODES,
@@ -81,7 +80,6 @@ pub(super) static HEX8: ElementEntry = ElementEntry {
 
 static HEX20_DATA: Element = Element {
     kind: ElementKind::Hex20,
-    order: Order::Quadratic,
     corners: ElementKind::Hex8,
     dimension: 3,
     nodes: &with_middles::<8, 12, 20>(&NODES, &EDGES),

@@ -5,7 +5,8 @@
 //! file and one line here (`docs/how-to-add-an-element.md`): shape functions, the nodes of curved faces, the mirrored
 //! order and the regular cell follow from it.
 //!
-//! Node orders are those of VTK: corners, then the middles of edges in the order of the edges. Gmsh agrees for the
+//! Node orders are those of VTK: corners, then the middles of edges in the order of the edges, then those of faces and of the
+//! cell where an element has such. What lies where is read from the coordinates ([`ElementKind::place`]). Gmsh agrees for the
 //! linear elements. One quirk: VTK's documentation draws
 //! the wedge with the normal of its first triangle pointing outward, Gmsh (and VTK's own parametric coordinates)
 //! with that normal pointing to the second triangle. We take the latter; files of the other kind are repaired
@@ -27,7 +28,7 @@ use souple_table::{Entry, Table, UnknownName, nearest};
 
 use crate::quadrature::{QuadratureRule, RuleDefinition};
 
-/// Most nodes of any element, those to come included (hex20, hex27).
+/// Most nodes of any element, those to come included (hex27).
 pub const MAX_NODES: usize = 27;
 
 /// `√3/2`, height of the regular triangle.
@@ -82,13 +83,14 @@ elements! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monomial(pub [u8; 4]);
 
-/// Degree of the polynomials that an element holds completely, along its edges too.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
-    /// Nodes at the corners.
-    Linear,
-    /// Nodes at the corners, then one in the middle of each edge.
-    Quadratic,
+/// Where a node lies in its element: at a corner, or in the middle of a part of so many dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NodePlace {
+    Corner,
+    Edge,
+    /// Of a volume a face, of a surface element itself.
+    Face,
+    Inside,
 }
 
 /// A face of a cell (a side of a plane one): its nodes in the order of its own element, normal outward by the
@@ -103,12 +105,12 @@ pub struct Face {
 #[derive(Debug)]
 pub struct Element {
     pub kind: ElementKind,
-    pub order: Order,
     /// The linear element of the same corners.
     pub corners: ElementKind,
     /// Dimension of the reference cell: 1, 2 or 3.
     pub dimension: usize,
-    /// Reference coordinates of the nodes, corners first; zero beyond the dimension.
+    /// Reference coordinates of the nodes: corners, then middles of edges in the order of these, of faces and of the cell, where it has
+    /// such; zero beyond the dimension.
     pub nodes: &'static [[f64; 3]],
     /// Corners of the regular cell, all edges of length one: the best quality there is.
     pub regular: &'static [[f64; 3]],
@@ -140,6 +142,8 @@ struct Derived {
     /// `C_am` by rows: coefficients of shape function `a`.
     coefficients: Vec<f64>,
     rules: Vec<QuadratureRule>,
+    /// Of each node beyond the corners: the corners in whose middle it is.
+    middles: Vec<Vec<u8>>,
     faces: Vec<Face>,
     /// [`Element::mirrored`] for all nodes.
     mirrored: Vec<u8>,
@@ -169,8 +173,9 @@ impl ElementKind {
         &DERIVED[self as usize]
     }
 
-    pub fn order(self) -> Order {
-        self.element().order
+    /// Whether all nodes are corners: edges are straight then, and triangles flat.
+    pub fn is_linear(self) -> bool {
+        self.corners() == self
     }
 
     /// The linear element of the same corners.
@@ -194,10 +199,40 @@ impl ElementKind {
         is_box.then_some([at(-1.0)?, at(1.0)?])
     }
 
-    /// The element of the same corners and of another order.
-    pub fn of_order(self, order: Order) -> Self {
-        let same = |kind: &&Self| kind.corners() == self.corners() && kind.order() == order;
-        *Self::ALL.iter().find(same).expect("each reference cell has an element of each order")
+    /// Of each node beyond the corners, in their order: the corners of the part in whose middle it is.
+    pub fn middles(self) -> &'static [Vec<u8>] {
+        &self.derived().middles
+    }
+
+    /// Where a node lies.
+    pub fn place(self, node: usize) -> NodePlace {
+        let part = node.checked_sub(self.corner_count()).and_then(|middle| self.middles().get(middle));
+        match part.map_or(1, Vec::len) {
+            1 => NodePlace::Corner,
+            2 => NodePlace::Edge,
+            all if self.dimension() == 3 && all == self.corner_count() => NodePlace::Inside,
+            _ => NodePlace::Face,
+        }
+    }
+
+    /// Where the last of its nodes lies: in the middle of what it has nodes at most.
+    pub fn last_place(self) -> NodePlace {
+        self.place(self.node_count() - 1)
+    }
+
+    /// The element of the same corners with the most nodes of those that have none in the middle of more than `most`.
+    pub fn with_middles(self, most: NodePlace) -> Self {
+        let fits = |kind: &Self| kind.corners() == self.corners() && kind.last_place() <= most;
+        let fitting = Self::ALL.iter().copied().filter(fits);
+        fitting.max_by_key(|kind| kind.node_count()).unwrap_or(self.corners())
+    }
+
+    /// The nodes of an element by their places: corners, middles of edges, those of faces and of the cell.
+    pub fn by_place<T>(self, nodes: &[T]) -> [&[T]; 3] {
+        let beyond = self.middles().iter().filter(|part| part.len() == 2).count();
+        let (corners, middles) = nodes.split_at(self.corner_count().min(nodes.len()));
+        let (of_edges, others) = middles.split_at(beyond.min(middles.len()));
+        [corners, of_edges, others]
     }
 
     /// Faces of volumes, sides of surface elements.
@@ -367,26 +402,41 @@ impl Element {
         Derived {
             coefficients: inverse_transposed(&self.vandermonde(), self.nodes.len()),
             rules,
+            middles: (self.corners.node_count()..self.nodes.len())
+                .map(|node| self.part_around(node))
+                .collect(),
             faces: self.faces.iter().map(|corners| self.face(corners)).collect(),
-            mirrored: self.nodes_of(self.kind, self.mirrored),
+            mirrored: self.nodes_of(self.kind, self.mirrored).expect("the mirrored cell has the same nodes"),
         }
     }
 
-    /// The face of given corners, of this element's order.
-    fn face(&self, corners: &[u8]) -> Face {
-        let is_linear_face = |kind: &&ElementKind| {
-            let element = kind.element();
-            element.order == Order::Linear
-                && element.dimension + 1 == self.dimension
-                && element.nodes.len() == corners.len()
+    /// The corners in whose middle a node beyond them is: of an edge, of a face, or all.
+    fn part_around(&self, node: usize) -> Vec<u8> {
+        let at = |corner: &u8| Vec3::from_array(self.nodes[usize::from(*corner)]);
+        let all: Vec<u8> = (0..self.corners.node_count() as u8).collect();
+        let edges = self.edges.iter().map(|edge| edge.as_slice());
+        let mut parts = edges.chain(self.faces.iter().copied()).chain([all.as_slice()]);
+        let is_middle = |part: &&[u8]| {
+            let middle = part.iter().map(at).sum::<Vec3>() / part.len() as f64;
+            (middle - Vec3::from_array(self.nodes[node])).length() < 1e-9
         };
-        let linear = ElementKind::ALL.iter().find(is_linear_face);
-        let kind = linear.expect("faces of elements are elements of the table").of_order(self.order);
-        Face { kind, nodes: self.nodes_of(kind, corners) }
+        parts.find(is_middle).expect("nodes are corners and middles of edges, of faces and of cells").to_vec()
     }
 
-    /// The nodes of this element on which the nodes of `part` fall when its corners lie on `corners`.
-    fn nodes_of(&self, part: ElementKind, corners: &[u8]) -> Vec<u8> {
+    /// The face of given corners: the element with the most nodes of which each is a node of this one.
+    fn face(&self, corners: &[u8]) -> Face {
+        let is_face = |kind: &&ElementKind| {
+            let element = kind.element();
+            element.dimension + 1 == self.dimension && element.corners.node_count() == corners.len()
+        };
+        let faces = ElementKind::ALL.iter().copied().filter(|kind| is_face(&kind));
+        let fitting = faces.filter_map(|kind| Some(Face { kind, nodes: self.nodes_of(kind, corners)? }));
+        fitting.max_by_key(|face| face.nodes.len()).expect("faces of elements are elements of the table")
+    }
+
+    /// The nodes of this element on which the nodes of `part` fall when its corners lie on `corners`; `None` where one of them
+    /// falls on none.
+    fn nodes_of(&self, part: ElementKind, corners: &[u8]) -> Option<Vec<u8>> {
         let node = |a: u8| Vec3::from_array(self.nodes[usize::from(a)]);
         let corners: Vec<Vec3> = corners.iter().map(|a| node(*a)).collect();
         let find = |xi: &[f64; 3]| {
@@ -394,8 +444,7 @@ impl Element {
             let place = part.corners().element().straight(&corners, Vec3::from_array(*xi));
             (0..self.nodes.len() as u8).find(|a| (node(*a) - place).length() < 1e-9)
         };
-        let found = part.element().nodes.iter().map(find);
-        found.collect::<Option<_>>().expect("middles of edges are nodes of elements of the same order")
+        part.element().nodes.iter().map(find).collect()
     }
 
     /// `Σ N_a(ξ) x_a` of a linear element.

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, SQRT_3_2, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, SQRT_3_2, with_middles};
 use crate::quadrature::{RuleDefinition, prism};
 
 const NODES: [[f64; 3]; 6] =
@@ -28,7 +28,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static PRISM6_DATA: Element = Element {
     kind: ElementKind::Prism6,
-    order: Order::Linear,
     corners: ElementKind::Prism6,
     dimension: 3,
     nodes: &NODES,
@@ -67,7 +66,6 @@ pub(super) static PRISM6: ElementEntry = ElementEntry {
 
 static PRISM15_DATA: Element = Element {
     kind: ElementKind::Prism15,
-    order: Order::Quadratic,
     corners: ElementKind::Prism6,
     dimension: 3,
     nodes: &with_middles::<6, 9, 15>(&NODES, &EDGES),

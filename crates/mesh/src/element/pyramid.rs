@@ -7,7 +7,7 @@
 use souple_math::Vec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
 use crate::quadrature::{RuleDefinition, pyramid, pyramid_five};
 
 const NODES: [[f64; 3]; 5] =
@@ -27,7 +27,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static PYRAMID5_DATA: Element = Element {
     kind: ElementKind::Pyramid5,
-    order: Order::Linear,
     corners: ElementKind::Pyramid5,
     dimension: 3,
     nodes: &NODES,
@@ -69,7 +68,6 @@ pub(super) static PYRAMID5: ElementEntry = ElementEntry {
 
 static PYRAMID13_DATA: Element = Element {
     kind: ElementKind::Pyramid13,
-    order: Order::Quadratic,
     corners: ElementKind::Pyramid5,
     dimension: 3,
     nodes: &with_middles::<5, 8, 13>(&NODES, &EDGES),

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
 use crate::quadrature::{RuleDefinition, quadrilateral};
 
 const NODES: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
@@ -20,7 +20,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static QUAD4_DATA: Element = Element {
     kind: ElementKind::Quad4,
-    order: Order::Linear,
     corners: ElementKind::Quad4,
     dimension: 2,
     nodes: &NODES,
@@ -51,7 +50,6 @@ pub(super) static QUAD4: ElementEntry = ElementEntry {
 
 static QUAD8_DATA: Element = Element {
     kind: ElementKind::Quad8,
-    order: Order::Quadratic,
     corners: ElementKind::Quad4,
     dimension: 2,
     nodes: &with_middles::<4, 4, 8>(&NODES, &EDGES),

@@ -267,18 +267,23 @@ fn mirrored_order_turns_the_cell() {
     }
 }
 
-/// Quadratic elements reproduce quadratic fields, gradients included, and their nodes are those of the linear one and
-/// the middles of its edges.
+/// Elements with nodes on their edges reproduce quadratic fields; their nodes are those of the linear one, the middles of its
+/// edges in their order, and those of faces and of the cell.
 #[test]
 fn quadratic_elements_hold_all_quadratics() {
     let field = |x: Vec3| 1.0 + x.x - 2.0 * x.y + x.x * x.x - x.y * x.z + 3.0 * x.z * x.z + x.x * x.y;
-    for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.order() == Order::Quadratic) {
+    for kind in ElementKind::ALL.iter().copied().filter(|kind| !kind.is_linear()) {
         let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
-        let corners = kind.corner_count();
-        assert_eq!(nodes.len(), corners + kind.edges().len(), "{kind}");
-        for (node, [a, b]) in nodes[corners..].iter().zip(kind.edges()) {
+        let [corners, of_edges, others] = kind.by_place(&nodes);
+        assert_eq!((corners.len(), of_edges.len()), (kind.corner_count(), kind.edges().len()), "{kind}");
+        assert_eq!(corners.len() + of_edges.len() + others.len(), nodes.len(), "{kind}");
+        for (node, [a, b]) in of_edges.iter().zip(kind.edges()) {
             assert_eq!(*node, (nodes[usize::from(*a)] + nodes[usize::from(*b)]) * 0.5, "{kind}");
         }
+        let places: Vec<NodePlace> = (0..nodes.len()).map(|node| kind.place(node)).collect();
+        assert!(places.is_sorted(), "{kind}: {places:?}");
+        assert_eq!(kind.with_middles(kind.last_place()), kind);
+        assert_eq!(kind.with_middles(NodePlace::Corner), kind.corners());
         for xi in samples(kind) {
             let value: f64 =
                 kind.shape(xi).iter().zip(&nodes).map(|(weight, node)| weight * field(*node)).sum();

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, SQRT_2_3, SQRT_3_2, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, SQRT_2_3, SQRT_3_2, with_middles};
 use crate::quadrature::{RuleDefinition, tetrahedron};
 
 const NODES: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -21,7 +21,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static TET4_DATA: Element = Element {
     kind: ElementKind::Tet4,
-    order: Order::Linear,
     corners: ElementKind::Tet4,
     dimension: 3,
     nodes: &NODES,
@@ -53,7 +52,6 @@ pub(super) static TET4: ElementEntry = ElementEntry {
 
 static TET10_DATA: Element = Element {
     kind: ElementKind::Tet10,
-    order: Order::Quadratic,
     corners: ElementKind::Tet4,
     dimension: 3,
     nodes: &with_middles::<4, 6, 10>(&NODES, &EDGES),

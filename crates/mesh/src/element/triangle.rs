@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, Order, SQRT_3_2, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, SQRT_3_2, with_middles};
 use crate::quadrature::{RuleDefinition, triangle};
 
 const NODES: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -20,7 +20,6 @@ fn slack(xi: Vec3) -> f64 {
 
 static TRI3_DATA: Element = Element {
     kind: ElementKind::Tri3,
-    order: Order::Linear,
     corners: ElementKind::Tri3,
     dimension: 2,
     nodes: &NODES,
@@ -52,7 +51,6 @@ pub(super) static TRI3: ElementEntry = ElementEntry {
 
 static TRI6_DATA: Element = Element {
     kind: ElementKind::Tri6,
-    order: Order::Quadratic,
     corners: ElementKind::Tri3,
     dimension: 2,
     nodes: &with_middles::<3, 3, 6>(&NODES, &EDGES),

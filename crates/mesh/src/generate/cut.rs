@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_table::{Kind, Parameter, Value, Values};
 
-use crate::{CellBlock, ElementKind, Mesh, MeshSize, Order};
+use crate::{CellBlock, ElementKind, Mesh, MeshSize, NodePlace};
 
 /// How a cube is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,22 +66,25 @@ impl Cut {
     };
 
     pub(super) fn from_values(values: &Values) -> Self {
-        match values.text("element") {
-            "tet4" | "tet10" | "tet4_mirrored" => Self::Tetrahedra,
-            "hex8" | "hex20" => Self::Hexahedra,
-            "prism6" | "prism15" => Self::Prisms,
-            "pyramid5" | "pyramid13" => Self::Pyramids,
-            "mixed" | "mixed_quadratic" => Self::Mixed,
-            "tet4_centred" => Self::Centred,
-            other => unreachable!("`{other}` is not among the declared choices"),
+        let name = values.text("element");
+        match (name, ElementKind::from_name(name).map(ElementKind::corners)) {
+            (_, Ok(ElementKind::Tet4)) => Self::Tetrahedra,
+            (_, Ok(ElementKind::Hex8)) => Self::Hexahedra,
+            (_, Ok(ElementKind::Prism6)) => Self::Prisms,
+            (_, Ok(ElementKind::Pyramid5)) => Self::Pyramids,
+            ("tet4_mirrored", _) => Self::Tetrahedra,
+            ("mixed" | "mixed_quadratic", _) => Self::Mixed,
+            ("tet4_centred", _) => Self::Centred,
+            (other, _) => unreachable!("`{other}` is not among the declared choices"),
         }
     }
 
-    /// The most points of a quadratic mesh for each of the linear one: one more for each edge.
-    fn raised_per_point(self) -> u64 {
+    /// The most points of a mesh raised to nodes in the middles of parts up to `most`, for each of the linear one.
+    fn raised_per_point(self, most: NodePlace) -> u64 {
         match self {
-            // three edges along the axes for each point
-            Self::Hexahedra => 4,
+            _ if most == NodePlace::Corner => 1,
+            // three edges along the axes for each point, three faces across them, and a cell
+            Self::Hexahedra => [1, 4, 7, 8][most as usize],
             // one across the faces of triangles
             Self::Prisms => 5,
             // three edges of a cube and eight to its centre, for two points
@@ -103,32 +106,26 @@ impl Cut {
     }
 }
 
-/// The order of the cells asked for.
-fn order(values: &Values) -> Order {
+/// In the middles of what the cells asked for have nodes.
+pub(super) fn last_place(values: &Values) -> NodePlace {
     match values.text("element") {
-        "tet10" | "hex20" | "prism15" | "pyramid13" | "mixed_quadratic" | "tri6" | "quad8" | "edge3" => {
-            Order::Quadratic
-        }
-        _ => Order::Linear,
+        "mixed_quadratic" => NodePlace::Edge,
+        name => ElementKind::from_name(name).map_or(NodePlace::Corner, ElementKind::last_place),
     }
 }
 
 /// The mesh in the order asked for; `place` gives the middle of an edge from its ends.
 pub(super) fn in_order(values: &Values, mesh: Mesh, place: impl Fn([Vec3; 2]) -> Vec3) -> Mesh {
-    match order(values) {
-        Order::Linear => mesh,
-        Order::Quadratic => mesh.raised(place),
+    match last_place(values) {
+        NodePlace::Corner => mesh,
+        most => mesh.raised(most, place),
     }
 }
 
 /// The size of that mesh from the linear one's: at most so many points.
 pub(super) fn size_in_order(values: &Values, size: MeshSize) -> MeshSize {
-    match order(values) {
-        Order::Linear => size,
-        Order::Quadratic => {
-            MeshSize { points: size.points * Cut::from_values(values).raised_per_point(), ..size }
-        }
-    }
+    let per_point = Cut::from_values(values).raised_per_point(last_place(values));
+    MeshSize { points: size.points * per_point, ..size }
 }
 
 /// The middle of a straight edge.

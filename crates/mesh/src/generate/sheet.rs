@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::cut::{in_order, middle};
+use super::cut::{in_order, last_place, middle};
 use super::{Build, GeneratorEntry};
-use crate::{CellBlock, ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
+use crate::{CellBlock, ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize, NodePlace};
 
 pub(super) static SHEET: GeneratorEntry = GeneratorEntry {
     name: "sheet",
@@ -61,10 +61,10 @@ impl Pattern {
         let [along, across] = ["cells_along", "cells_across"].map(|name| values.integer(name));
         limited(along as f64 * across as f64 * 2.0)?;
         let (along, across) = (along as u64, across as u64);
-        let first_cut = match values.text("element") {
-            "tri3" | "tri6" => 0,
-            "quad4" | "quad8" => along,
-            _ => along.div_ceil(2),
+        let first_cut = match ElementKind::from_name(values.text("element")).map(ElementKind::corners) {
+            Ok(ElementKind::Tri3) => 0,
+            Ok(_) => along,
+            Err(_) => along.div_ceil(2),
         };
         Ok(Self { along, across, first_cut })
     }
@@ -78,9 +78,12 @@ fn sheet_size(values: &Values) -> Result<MeshSize, MeshError> {
     let pattern = Pattern::of(values)?;
     let (nx, ny, cut) = (pattern.along, pattern.across, pattern.cut_count());
     let corners = (nx + 1) * (ny + 1);
-    let middles = match values.text("element") {
-        "tri6" | "quad8" | "mixed_quadratic" => nx * (ny + 1) + ny * (nx + 1) + cut,
-        _ => 0,
+    let of_edges = nx * (ny + 1) + ny * (nx + 1) + cut;
+    let middles = match last_place(values) {
+        NodePlace::Corner => 0,
+        NodePlace::Edge => of_edges,
+        // of quadrilaterals: triangles have none there
+        _ => of_edges + pattern.first_cut * ny,
     };
     Ok(MeshSize { points: corners + middles, cells: nx * ny + cut })
 }
@@ -124,7 +127,7 @@ fn sheet(values: &Values) -> Result<Mesh, MeshError> {
 fn line_size(values: &Values) -> Result<MeshSize, MeshError> {
     let cells = values.integer("cells") as u64;
     limited(cells as f64)?;
-    let middles = if values.text("element") == "edge3" { cells } else { 0 };
+    let middles = if last_place(values) == NodePlace::Edge { cells } else { 0 };
     Ok(MeshSize { points: cells + 1 + middles, cells })
 }
 

@@ -4,7 +4,7 @@
 
 use souple_engine::Mass;
 use souple_math::Vec3;
-use souple_mesh::{Cell, MAX_NODES, Mesh, Order, QuadratureRule, VoronoiCells};
+use souple_mesh::{Cell, MAX_NODES, Mesh, QuadratureRule, VoronoiCells};
 
 /// Adds the mass of every cell to those of its nodes' rows. Call [`Mass::seal`] when all bodies are in.
 ///
@@ -14,25 +14,24 @@ use souple_mesh::{Cell, MAX_NODES, Mesh, Order, QuadratureRule, VoronoiCells};
 pub fn lumped_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize) -> f64, mass: &mut Mass) {
     for (index, cell) in mesh.cells().enumerate() {
         let density = density_of_cell(index);
-        match cell.kind.order() {
-            Order::Linear => over_samples(mesh, cell, 2, |shape, volume| {
+        if cell.kind.is_linear() {
+            over_samples(mesh, cell, 2, |shape, volume| {
                 for (node, weight) in cell.nodes.iter().zip(shape) {
                     let row = node + first_row as u32;
                     mass.add(row, row, density * volume * weight);
                 }
-            }),
-            Order::Quadratic => {
-                let (mut total, mut diagonal) = (0.0, [0.0; MAX_NODES]);
-                over_samples(mesh, cell, 4, |shape, volume| {
-                    total += volume;
-                    diagonal.iter_mut().zip(shape).for_each(|(sum, weight)| *sum += volume * weight * weight);
-                });
-                let scale = density * total / diagonal.iter().sum::<f64>();
-                for (node, share) in cell.nodes.iter().zip(diagonal) {
-                    let row = node + first_row as u32;
-                    mass.add(row, row, share * scale);
-                }
-            }
+            });
+            continue;
+        }
+        let (mut total, mut diagonal) = (0.0, [0.0; MAX_NODES]);
+        over_samples(mesh, cell, 4, |shape, volume| {
+            total += volume;
+            diagonal.iter_mut().zip(shape).for_each(|(sum, weight)| *sum += volume * weight * weight);
+        });
+        let scale = density * total / diagonal.iter().sum::<f64>();
+        for (node, share) in cell.nodes.iter().zip(diagonal) {
+            let row = node + first_row as u32;
+            mass.add(row, row, share * scale);
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use souple_engine::CellField;
 use souple_math::{Mat3, Vec3};
-use souple_mesh::Order;
 
 use super::geometry::{AnyElement, Geometry};
 use super::layout::LANES;
@@ -57,7 +56,7 @@ impl SolidForce {
             volume: sum.volume,
             // by the rule that is exact for the determinant, whatever the samples of the law
             current_volume: if self.section == Section::Solid {
-                let rule = if kind.order() == Order::Linear { kind.default_rule() } else { kind.mass_rule() };
+                let rule = if kind.is_linear() { kind.default_rule() } else { kind.mass_rule() };
                 rule.points
                     .iter()
                     .map(|point| point.weight * kind.jacobian(&now, point.position).determinant())

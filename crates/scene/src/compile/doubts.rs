@@ -2,8 +2,8 @@
 
 use souple_engine::System;
 use souple_engine::linear::Method;
+use souple_mesh::USUAL_SIZES;
 use souple_mesh::repair::diagnose;
-use souple_mesh::{Order, USUAL_SIZES};
 use souple_models::materials::{Build, Material};
 use souple_table::{Value, four_digits, readable};
 
@@ -49,7 +49,7 @@ pub fn warn(draft: &mut Draft) {
                 four_digits(size)
             ));
         }
-        let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
+        let is_linear = body.mesh.blocks.iter().any(|block| block.kind.is_linear());
         for (chosen, material) in materials(body.spec) {
             let doubts = of_material(&material, locking_of(body, is_linear));
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(&chosen.site))));
