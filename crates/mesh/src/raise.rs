@@ -182,6 +182,39 @@ mod tests {
         }
     }
 
+    /// Raised to the middles of faces and of cells too: those are shared, lie among the curves around them and join the groups of their
+    /// corners.
+    #[test]
+    fn middles_of_faces_and_cells() {
+        let values = Values::new()
+            .with("size", Value::Vector([2.0, 1.0, 1.0]))
+            .with("cells", Value::Vector([4.0, 2.0, 2.0]))
+            .with("element", Value::Text("hex8"));
+        let linear = generate("box", values).unwrap();
+        let mut mesh = linear.raised(NodePlace::Inside, |[a, b]| (a + b) * 0.5);
+        assert_eq!(mesh.blocks[0].kind, ElementKind::Hex27);
+        // a grid of half the size
+        assert_eq!(mesh.points.len(), 9 * 5 * 5);
+        assert_eq!(mesh.groups["x_min"].points.len(), 5 * 5);
+        mesh.validate().unwrap();
+        mesh.faces().conforming().unwrap();
+        assert_eq!(mesh.faces().boundary, linear.faces().boundary);
+        let is_on_grid = |p: &Vec3| (*p * 4.0).to_array().iter().all(|x| (x - x.round()).abs() < 1e-12);
+        assert!(mesh.points.iter().all(is_on_grid));
+        assert!((mesh.boundary_surface().area() - 10.0).abs() < 1e-12);
+        // edges along x bulge by the same: so do the middles between them
+        let bulge = |[a, b]: [Vec3; 2]| {
+            let along = (a.x - b.x).abs();
+            (a + b) * 0.5 + Vec3::Y * (0.1 * along)
+        };
+        let bent = linear.raised(NodePlace::Inside, bulge);
+        for (straight, bent) in mesh.points.iter().zip(&bent.points).skip(linear.points.len()) {
+            let is_between = ((straight.x * 4.0).round() as i64) % 2 == 1;
+            let expected = if is_between { 0.05 } else { 0.0 };
+            assert!((bent.y - straight.y - expected).abs() < 1e-12, "{straight:?} {bent:?}");
+        }
+    }
+
     /// A quadratic cell beside a linear one does not fit: both faces are boundary.
     #[test]
     fn orders_do_not_mix_across_a_face() {

@@ -269,7 +269,7 @@ fn derived_kernels_are_their_texts() {
 #[test]
 fn shared_stiffness_is_the_law() {
     let hooke = "k/2*tr(eps)^2 + mu*dot(eps, eps)";
-    for element in ["hex8", "prism6", "pyramid5", "tet10", "hex20", "prism15", "pyramid13"] {
+    for element in ["hex8", "prism6", "pyramid5", "tet10", "hex20", "hex27", "prism15", "pyramid13"] {
         // more than eight blocks of each shape, and a last block that is not full
         let regular = bar_of(element, [5.0, 5.0, 4.0]);
         let mut half = regular.clone();

@@ -23,7 +23,7 @@ use souple_solve::dense::{self, take_absolute};
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
 
-const ELEMENTS: [&str; 10] = [
+const ELEMENTS: [&str; 11] = [
     "tet4",
     "hex8",
     "prism6",
@@ -31,6 +31,7 @@ const ELEMENTS: [&str; 10] = [
     "mixed",
     "tet10",
     "hex20",
+    "hex27",
     "prism15",
     "pyramid13",
     "mixed_quadratic",
@@ -585,17 +586,21 @@ fn on_cube(p: &Vec3) -> bool {
 #[test]
 fn patch_test_is_exact() {
     let F = Mat3::from_rows([[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [-0.01, 0.02, 1.08]]);
-    let linear = ["tet4", "hex8", "prism6", "pyramid5", "mixed"].map(|element| (element, false, false));
-    let straight = linear.map(|(element, ..)| (element, true, false));
-    let curved = linear.map(|(element, ..)| (element, true, true));
+    let linear = ["tet4", "hex8", "prism6", "pyramid5", "mixed"];
+    let of_linear = linear.map(|element| (element, NodePlace::Corner, false));
+    // with nodes in faces and inside too, where there is such an element
+    let raised =
+        linear.map(|element| (element, NodePlace::Edge)).into_iter().chain([("hex8", NodePlace::Inside)]);
+    let raised = raised.flat_map(|(element, most)| [(element, most, false), (element, most, true)]);
     for law in AnyLaw::ALL {
-        for (element, is_quadratic, is_curved) in linear.into_iter().chain(straight).chain(curved) {
+        for (element, most, is_curved) in of_linear.into_iter().chain(raised.clone()) {
+            let is_quadratic = most > NodePlace::Corner;
             // four cubes along x: `mixed` takes no fewer
             let cells = if is_quadratic { [4.0, 2.0, 2.0] } else { [4.0, 4.0, 4.0] };
             let mut mesh = bar([1.0, 1.0, 1.0], cells, element);
             distort(&mut mesh.points, 0.02);
             if is_quadratic {
-                mesh = mesh.raised(NodePlace::Edge, |[a, b]| (a + b) * 0.5);
+                mesh = mesh.raised(most, |[a, b]| (a + b) * 0.5);
             }
             if is_curved {
                 distort(&mut mesh.points, 0.01);
@@ -677,9 +682,10 @@ fn distance_from_harmonic(element: &str, n: f64) -> f64 {
 /// Displacements converge in the mean square at the second order on linear elements and at the third on quadratic ones.
 #[test]
 fn displacements_converge_at_the_order_of_the_element() {
-    for (elements, order) in
-        [(["tet4", "hex8", "prism6", "pyramid5"], 2.0), (["tet10", "hex20", "prism15", "pyramid13"], 3.0)]
-    {
+    for (elements, order) in [
+        (&["tet4", "hex8", "prism6", "pyramid5"][..], 2.0),
+        (&["tet10", "hex20", "hex27", "prism15", "pyramid13"][..], 3.0),
+    ] {
         for element in elements {
             let [coarse, fine] = [2.0, 4.0].map(|n| distance_from_harmonic(element, n));
             let measured = (coarse / fine).log2();

@@ -24,7 +24,7 @@ fn listed_names_are_accepted() {
         ("elements", "bodies.cube.mesh.element"),
     ] {
         // boxes are filled with volumes
-        let flat = ["edge2", "edge3", "tri3", "tri6", "quad4", "quad8"];
+        let flat = ["edge2", "edge3", "tri3", "tri6", "quad4", "quad8", "quad9"];
         for name in names(kind).iter().filter(|name| !flat.contains(&name.as_str())) {
             // `static` refuses bodies that are not held, by its own words
             let answer = souple(["check", &scene, "--set", &format!("{key}={name}")]);

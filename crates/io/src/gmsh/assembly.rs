@@ -75,8 +75,8 @@ impl Assembly {
     /// The type of a number, refused if its elements cannot be used.
     pub fn element_type(&self, cursor: &Cursor<'_>, number: i64) -> Result<ElementType, Fault> {
         let Some(element) = element_type::find(number) else {
-            let expected = "4, 11 (tetrahedra), 5, 17 (hexahedra), 6, 18 (prisms), 7, 19 (pyramids), \
-                            2, 3, 9, 16 (facets) or 1, 8 (edges)";
+            let expected = "4, 11 (tetrahedra), 5, 12, 17 (hexahedra), 6, 18 (prisms), 7, 19 (pyramids), \
+                            2, 3, 9, 10, 16 (facets) or 1, 8 (edges)";
             return Err(cursor.fault("the element type", number.to_string(), expected));
         };
         if element.dimension == 3 && element.kind.is_none() {

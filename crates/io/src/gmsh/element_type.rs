@@ -33,9 +33,9 @@ const TYPES: &[ElementType] = &[
     ours(7, "pyramid of 5 nodes", ElementKind::Pyramid5, 3),
     ours(8, "line of 3 nodes", ElementKind::Edge3, 1),
     ours(9, "triangle of 6 nodes", ElementKind::Tri6, 2),
-    other(10, "quadrangle of 9 nodes", 2, 9),
+    ours(10, "quadrangle of 9 nodes", ElementKind::Quad9, 2),
     ours(11, "tetrahedron of 10 nodes", ElementKind::Tet10, 3),
-    other(12, "hexahedron of 27 nodes", 3, 27),
+    ours(12, "hexahedron of 27 nodes", ElementKind::Hex27, 3),
     other(13, "prism of 18 nodes", 3, 18),
     other(14, "pyramid of 14 nodes", 3, 14),
     other(15, "point", 0, 1),
@@ -68,12 +68,15 @@ pub(super) fn number_of(kind: ElementKind) -> Option<i64> {
 }
 
 /// The node of Gmsh's list that each of our nodes is. Corners agree; Gmsh lists the middles of edges by the corner of
-/// lowest number, we by the faces around (as VTK does).
+/// lowest number, we by the faces around (as VTK does), and those of faces from the bottom around, we across x, y and z.
 pub(super) fn order(kind: ElementKind) -> &'static [u8] {
     const PLAIN: [u8; 20] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
     match kind {
         ElementKind::Tet10 => &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
         ElementKind::Hex20 => &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15],
+        ElementKind::Hex27 => &[
+            0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26,
+        ],
         ElementKind::Prism15 => &[0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11],
         ElementKind::Pyramid13 => &[0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12],
         _ => &PLAIN[..kind.node_count()],

@@ -235,7 +235,7 @@ fn faulty_pictures_are_refused_and_strange_ones_drawn() {
 /// the outside meets the section.
 #[test]
 fn sections_of_warped_cells_close() {
-    let curved = ["hex20", "prism15", "pyramid13", "tet10"];
+    let curved = ["hex20", "hex27", "prism15", "pyramid13", "tet10"];
     for element in ["hex8", "prism6", "pyramid5", "tet4"].into_iter().chain(curved) {
         let values = Values::new()
             .with("size", Value::Vector([1.0; 3]))

@@ -118,7 +118,7 @@ impl Grid {
             let edge = EDGE_TYPES.iter().find(|edge| is_of_edges && edge.number == *number);
             let Some(cell_type) = CELL_TYPES.iter().find(|cell| cell.number == *number).or(edge) else {
                 if !WITHOUT_VOLUME.contains(number) {
-                    let expected = "5, 7, 8, 9, 22, 23 (facets), 10, 24 (tets), 11, 12, 25 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
+                    let expected = "5, 7, 8, 9, 22, 23, 28 (facets), 10, 24 (tets), 11, 12, 25, 29 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
                     return Err(Fault::new(place, format!("types[{cell}]"), number.to_string(), expected));
                 }
                 *skipped.entry(*number).or_default() += 1;

@@ -46,9 +46,11 @@ const CELL_TYPES: &[CellType] = &[
     CellType { number: 22, kind: ElementKind::Tri6, order: PLAIN.split_at(6).0 },
     CellType { number: 23, kind: ElementKind::Quad8, order: PLAIN.split_at(8).0 },
     CellType { number: 24, kind: ElementKind::Tet10, order: PLAIN.split_at(10).0 },
-    CellType { number: 25, kind: ElementKind::Hex20, order: PLAIN },
+    CellType { number: 25, kind: ElementKind::Hex20, order: PLAIN.split_at(20).0 },
     CellType { number: 26, kind: ElementKind::Prism15, order: PLAIN.split_at(15).0 },
     CellType { number: 27, kind: ElementKind::Pyramid13, order: PLAIN.split_at(13).0 },
+    CellType { number: 28, kind: ElementKind::Quad9, order: PLAIN.split_at(9).0 },
+    CellType { number: 29, kind: ElementKind::Hex27, order: PLAIN },
 ];
 
 /// Edges, which are cells where a grid has nothing else, and left out beside other cells.
@@ -58,14 +60,15 @@ const EDGE_TYPES: [CellType; 2] = [
 ];
 
 /// Nodes of quadratic cells: VTK lists them as we do.
-const PLAIN: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+const PLAIN: &[usize] =
+    &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26];
 
 /// The type of polygons of any number of corners.
 const POLYGON: i64 = 7;
 
 /// Types that hold no volume and no facet of ours: vertices, lines, strips, polygons of two corners, curved curves and some
 /// facets.
-const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 28, 30, 34, 35, 36];
+const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 30, 34, 35, 36];
 
 /// The number of the VTK type of an element.
 fn cell_type_of(kind: ElementKind) -> Option<u8> {

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, followed_by, with_middles};
 use crate::quadrature::{RuleDefinition, hexahedron};
 
 const NODES: [[f64; 3]; 8] = [
@@ -128,4 +128,69 @@ pub(super) static HEX20: ElementEntry = ElementEntry {
     source: "Dhatt & Touzot 1984, §2.6",
     parameters: &[],
     build: &HEX20_DATA,
+};
+
+/// Middles of faces in the order of VTK, across x, y and z, and of the cell.
+const CENTRES: [[f64; 3]; 7] = [
+    [-1.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, -1.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, -1.0],
+    [0.0, 0.0, 1.0],
+    [0.0, 0.0, 0.0],
+];
+
+static HEX27_DATA: Element = Element {
+    kind: ElementKind::Hex27,
+    corners: ElementKind::Hex8,
+    dimension: 3,
+    nodes: &followed_by::<27>(HEX20_DATA.nodes, &CENTRES),
+    regular: REGULAR,
+    basis: &[
+        Monomial([0, 0, 0, 0]),
+        Monomial([1, 0, 0, 0]),
+        Monomial([2, 0, 0, 0]),
+        Monomial([0, 1, 0, 0]),
+        Monomial([1, 1, 0, 0]),
+        Monomial([2, 1, 0, 0]),
+        Monomial([0, 2, 0, 0]),
+        Monomial([1, 2, 0, 0]),
+        Monomial([2, 2, 0, 0]),
+        Monomial([0, 0, 1, 0]),
+        Monomial([1, 0, 1, 0]),
+        Monomial([2, 0, 1, 0]),
+        Monomial([0, 1, 1, 0]),
+        Monomial([1, 1, 1, 0]),
+        Monomial([2, 1, 1, 0]),
+        Monomial([0, 2, 1, 0]),
+        Monomial([1, 2, 1, 0]),
+        Monomial([2, 2, 1, 0]),
+        Monomial([0, 0, 2, 0]),
+        Monomial([1, 0, 2, 0]),
+        Monomial([2, 0, 2, 0]),
+        Monomial([0, 1, 2, 0]),
+        Monomial([1, 1, 2, 0]),
+        Monomial([2, 1, 2, 0]),
+        Monomial([0, 2, 2, 0]),
+        Monomial([1, 2, 2, 0]),
+        Monomial([2, 2, 2, 0]),
+    ],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
+    measure: 8.0,
+    rules: HEX20_DATA.rules,
+    default_rule: "gauss_27",
+    full_rule: "gauss_125",
+    mass_rule: "gauss_27",
+    slack,
+};
+
+pub(super) static HEX27: ElementEntry = ElementEntry {
+    name: "hex27",
+    summary: "triquadratic hexahedron, nodes in its faces and its middle; full quadratics on crooked cells too",
+    source: "Dhatt & Touzot 1984, §2.6",
+    parameters: &[],
+    build: &HEX27_DATA,
 };

@@ -28,7 +28,7 @@ use souple_table::{Entry, Table, UnknownName, nearest};
 
 use crate::quadrature::{QuadratureRule, RuleDefinition};
 
-/// Most nodes of any element, those to come included (hex27).
+/// Most nodes of any element.
 pub const MAX_NODES: usize = 27;
 
 /// `√3/2`, height of the regular triangle.
@@ -69,10 +69,12 @@ elements! {
     Tri6: 6, triangle::TRI6;
     Quad4: 4, quadrilateral::QUAD4;
     Quad8: 8, quadrilateral::QUAD8;
+    Quad9: 9, quadrilateral::QUAD9;
     Tet4: 4, tetrahedron::TET4;
     Tet10: 10, tetrahedron::TET10;
     Hex8: 8, hexahedron::HEX8;
     Hex20: 20, hexahedron::HEX20;
+    Hex27: 27, hexahedron::HEX27;
     Prism6: 6, prism::PRISM6;
     Prism15: 15, prism::PRISM15;
     Pyramid5: 5, pyramid::PYRAMID5;
@@ -557,6 +559,18 @@ const fn with_middles<const C: usize, const E: usize, const N: usize>(
         a += 1;
     }
     nodes
+}
+
+/// The nodes of an element, and more.
+const fn followed_by<const N: usize>(nodes: &[[f64; 3]], others: &[[f64; 3]]) -> [[f64; 3]; N] {
+    assert!(N == nodes.len() + others.len(), "all of both");
+    let mut all = [[0.0; 3]; N];
+    let mut a = 0;
+    while a < N {
+        all[a] = if a < nodes.len() { nodes[a] } else { others[a - nodes.len()] };
+        a += 1;
+    }
+    all
 }
 
 /// The entry of an element in the table.

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::{Element, ElementEntry, ElementKind, Monomial, with_middles};
+use super::{Element, ElementEntry, ElementKind, Monomial, followed_by, with_middles};
 use crate::quadrature::{RuleDefinition, quadrilateral};
 
 const NODES: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
@@ -85,4 +85,40 @@ pub(super) static QUAD8: ElementEntry = ElementEntry {
     source: "Dhatt & Touzot 1984, §2.4",
     parameters: &[],
     build: &QUAD8_DATA,
+};
+
+static QUAD9_DATA: Element = Element {
+    kind: ElementKind::Quad9,
+    corners: ElementKind::Quad4,
+    dimension: 2,
+    nodes: &followed_by::<9>(QUAD8_DATA.nodes, &[[0.0, 0.0, 0.0]]),
+    regular: REGULAR,
+    basis: &[
+        Monomial([0, 0, 0, 0]),
+        Monomial([1, 0, 0, 0]),
+        Monomial([2, 0, 0, 0]),
+        Monomial([0, 1, 0, 0]),
+        Monomial([1, 1, 0, 0]),
+        Monomial([2, 1, 0, 0]),
+        Monomial([0, 2, 0, 0]),
+        Monomial([1, 2, 0, 0]),
+        Monomial([2, 2, 0, 0]),
+    ],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
+    measure: 4.0,
+    rules: QUAD8_DATA.rules,
+    default_rule: "gauss_9",
+    full_rule: "gauss_25",
+    mass_rule: "gauss_9",
+    slack,
+};
+
+pub(super) static QUAD9: ElementEntry = ElementEntry {
+    name: "quad9",
+    summary: "biquadratic quadrilateral, a node in its middle; faces of hex27",
+    source: "Dhatt & Touzot 1984, §2.4",
+    parameters: &[],
+    build: &QUAD9_DATA,
 };

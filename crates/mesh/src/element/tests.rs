@@ -313,3 +313,25 @@ fn shape_functions_on_faces_are_those_of_the_face() {
         }
     }
 }
+
+/// On crooked cells of straight edges those with nodes in faces and inside hold all quadratics of the world, which those with nodes on edges
+/// alone do not.
+#[test]
+fn crooked_cells_hold_quadratics() {
+    let shift = |x: Vec3| Vec3::new((3.0 * x.x + x.y).sin(), (2.0 * x.y - x.z).cos(), (x.x * x.z).sin());
+    let field = |x: Vec3| 1.0 + x.x - 2.0 * x.y + x.x * x.x - x.y * x.z + 3.0 * x.z * x.z + x.x * x.y;
+    for (name, is_exact) in [("quad8", false), ("quad9", true), ("hex20", false), ("hex27", true)] {
+        let kind = ElementKind::from_name(name).unwrap();
+        let crooked = |xi: Vec3| xi + shift(xi) * 0.2;
+        let node = |xi: &[f64; 3]| Vec3::from_array(*xi);
+        let corners: Vec<Vec3> = kind.corners().element().nodes.iter().map(|xi| crooked(node(xi))).collect();
+        let straight = |xi: Vec3| kind.corners().position(&corners, xi);
+        let values: Vec<f64> = kind.element().nodes.iter().map(|xi| field(straight(node(xi)))).collect();
+        let off = |xi: Vec3| {
+            let found: f64 = kind.shape(xi).iter().zip(&values).map(|(weight, value)| weight * value).sum();
+            (found - field(straight(xi))).abs()
+        };
+        let worst = samples(kind).into_iter().map(off).fold(0.0, f64::max);
+        assert_eq!(worst < 1e-13, is_exact, "{name}: {worst:e}");
+    }
+}

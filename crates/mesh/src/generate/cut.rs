@@ -35,6 +35,7 @@ impl Cut {
             "mixed",
             "tet10",
             "hex20",
+            "hex27",
             "prism15",
             "pyramid13",
             "mixed_quadratic",

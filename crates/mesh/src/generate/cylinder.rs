@@ -9,7 +9,8 @@ use super::cut::{Blocks, CORNERS, Cut, in_order, middle, on_arc, size_in_order};
 use super::{Build, GeneratorEntry, MeshSize};
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError};
 
-const ELEMENTS: &[&str] = &["tet4", "hex8", "prism6", "pyramid5", "tet10", "hex20", "prism15", "pyramid13"];
+const ELEMENTS: &[&str] =
+    &["tet4", "hex8", "prism6", "pyramid5", "tet10", "hex20", "hex27", "prism15", "pyramid13"];
 const ELEMENT: Parameter = Parameter::choice("element", ELEMENTS, "kind of cells").or(Value::Text("tet4"));
 const ORIGIN: Parameter =
     Parameter::vector("origin", "m", "middle of the end of least x").or(Value::Vector([0.0; 3]));

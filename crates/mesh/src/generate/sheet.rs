@@ -20,7 +20,7 @@ pub(super) static SHEET: GeneratorEntry = GeneratorEntry {
         Parameter::integer("cells_across", Range::at_least(1.0), "number of cells along y"),
         Parameter::choice(
             "element",
-            &["tri3", "tri6", "quad4", "quad8", "mixed", "mixed_quadratic"],
+            &["tri3", "tri6", "quad4", "quad8", "quad9", "mixed", "mixed_quadratic"],
             "kind of cells; rectangles are cut in two triangles, diagonals in a pattern of diamonds; of `mixed` those of the second half along x",
         )
         .or(Value::Text("tri3")),

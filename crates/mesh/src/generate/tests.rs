@@ -351,7 +351,7 @@ fn cylinder_refusals() {
 /// volume converges at the fourth order of the cell size.
 #[test]
 fn quadratic_meshes_are_sound_and_round() {
-    for element in ["tet10", "hex20", "prism15", "pyramid13", "mixed_quadratic"] {
+    for element in ["tet10", "hex20", "hex27", "prism15", "pyramid13", "mixed_quadratic"] {
         let entry = GENERATORS.find("bar").unwrap();
         let values = Values::new()
             .with("size", Value::Vector([1.0, 0.1, 0.1]))
@@ -379,7 +379,7 @@ fn quadratic_meshes_are_sound_and_round() {
 /// Sheets and lines: exact sizes, area and length, cells that look up.
 #[test]
 fn sheets_and_lines() {
-    for element in ["tri3", "tri6", "quad4", "quad8", "mixed", "mixed_quadratic"] {
+    for element in ["tri3", "tri6", "quad4", "quad8", "quad9", "mixed", "mixed_quadratic"] {
         let entry = GENERATORS.find("sheet").unwrap();
         let values = Values::new()
             .with("length", Value::Number(2.0))

@@ -184,6 +184,13 @@ pub(super) const CASES: &[Case] = &[
         ..CUBE
     },
     Case {
+        id: "order_hex27_smooth_energy",
+        capabilities: &["FAU-1", "FAU-5", "FAU-29", "FAU-58"],
+        what: "order of the energy's error on a smooth solution, hex27",
+        settings: &[r#"parameters.element="hex27""#],
+        ..CUBE
+    },
+    Case {
         id: "order_prism15_smooth_energy",
         what: "order of the energy's error on a smooth solution, prism15",
         settings: &[r#"parameters.element="prism15""#],
@@ -222,6 +229,13 @@ pub(super) const CASES: &[Case] = &[
         id: "order_quad8_smooth_energy",
         what: "order of the energy's error on a smooth solution in the plane, quad8",
         settings: &[r#"parameters.element="quad8""#],
+        ..SHEET
+    },
+    Case {
+        id: "order_quad9_smooth_energy",
+        capabilities: &["FAU-1", "FAU-29", "FAU-58"],
+        what: "order of the energy's error on a smooth solution in the plane, quad9",
+        settings: &[r#"parameters.element="quad9""#],
         ..SHEET
     },
     Case {

@@ -33,6 +33,7 @@ const STRESS: Case = Case {
 };
 
 const QUADRATIC: &str = r#"bodies.bar.mesh.element="mixed_quadratic""#;
+const HEX27: &str = r#"bodies.bar.mesh.element="hex27""#;
 
 /// All sides of the plate led by one linear map.
 const LED: &str = r#"bodies.plate.pins=[{ region = { union = [{ group = "x_min" }, { group = "x_max" }, { group = "y_min" }, { group = "y_max" }] }, motion = { formula = "[t * (0.05 * x + 0.03 * y), t * (0.02 * x - 0.04 * y), 0]" } }]"#;
@@ -176,6 +177,26 @@ pub(super) const CASES: &[Case] = &[
         ..ENERGY
     },
     Case {
+        id: "patch_hex27_displacement",
+        capabilities: &["FAU-1", "FAU-3", "FAU-29"],
+        what: "a node inside a patch of hex27 lands where the linear map puts it",
+        settings: &[HEX27],
+        reading: Reading::component("inside", 0),
+        reference: 0.14,
+        tolerance: Tolerance::Absolute(1e-12),
+        source: "(F - I) X",
+        mutation: r#"bodies.bar.pins[0].motion.formula="[t * (0.1 * x + 0.05 * y * y - 0.02 * z), 0, 0]""#,
+        ..ENERGY
+    },
+    Case {
+        id: "patch_hex27_energy",
+        capabilities: &["FAU-1", "FAU-3", "FAU-29"],
+        what: "energy of that patch, st_venant_kirchhoff",
+        settings: &[HEX27],
+        reference: 318086.1923076925,
+        ..ENERGY
+    },
+    Case {
         id: "patch_tri3",
         what: "a node inside a plate of tri3 whose sides are led lands where the linear map puts it",
         settings: plate!("tri3"),
@@ -203,4 +224,18 @@ pub(super) const CASES: &[Case] = &[
         ..PLANE_MIDDLE
     },
     Case { id: "patch_quad8_energy", what: "energy of that plate", settings: plate!("quad8"), ..PLANE },
+    Case {
+        id: "patch_quad9",
+        capabilities: &["FAU-1", "FAU-3", "FAU-29"],
+        what: "a node inside a plate of quad9 whose sides are led lands where the linear map puts it",
+        settings: plate!("quad9"),
+        ..PLANE_MIDDLE
+    },
+    Case {
+        id: "patch_quad9_energy",
+        capabilities: &["FAU-1", "FAU-3", "FAU-29"],
+        what: "energy of that plate",
+        settings: plate!("quad9"),
+        ..PLANE
+    },
 ];
