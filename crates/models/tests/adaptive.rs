@@ -41,10 +41,48 @@ fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -
 }
 
 fn adaptive(mesh: &Mesh, thresholds: &[(Criterion, f64)], back: f64) -> AdaptiveForce {
+    adaptive_section(mesh, Section::Solid, thresholds, back)
+}
+
+fn adaptive_section(
+    mesh: &Mesh,
+    section: Section,
+    thresholds: &[(Criterion, f64)],
+    back: f64,
+) -> AdaptiveForce {
     let of_cell = vec![0; mesh.cell_count()];
     let laws = laws();
     let adaptation = Adaptation { thresholds: thresholds.to_vec(), back };
-    AdaptiveForce::new(&describe(mesh, &laws, &of_cell), laws.clone(), adaptation).unwrap()
+    let description = SolidDescription { section, ..describe(mesh, &laws, &of_cell) };
+    AdaptiveForce::new(&description, laws.clone(), adaptation).unwrap()
+}
+
+fn sheet(element: &str) -> Mesh {
+    let values = Values::new()
+        .with("length", Value::Number(1.0))
+        .with("width", Value::Number(0.4))
+        .with("cells_along", Value::Integer(12))
+        .with("cells_across", Value::Integer(5))
+        .with("element", Value::Text(element));
+    souple_mesh::generate("sheet", values).unwrap()
+}
+
+/// Surface elements in every section that they may be of.
+fn sheets() -> impl Iterator<Item = (Mesh, Section)> {
+    let thickness = 0.02;
+    let sections = [
+        Section::PlaneStrain { thickness },
+        Section::PlaneStress { thickness },
+        Section::Membrane { thickness },
+    ];
+    let elements = ["tri3", "quad4", "tri6", "quad9", "mixed"];
+    sections.into_iter().flat_map(move |section| elements.map(|element| (sheet(element), section)))
+}
+
+/// Bent in their plane, membranes out of it too.
+fn bent_section(mesh: &Mesh, section: Section) -> Vec<Vec3> {
+    let out = if section.is_plane() { 0.0 } else { 1.0 };
+    bent(mesh).iter().zip(&mesh.points).map(|(x, p)| Vec3::new(x.x, x.y, p.z + out * (x.z - p.z))).collect()
 }
 
 fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> Configuration<'a> {
@@ -88,11 +126,12 @@ fn answers(force: &dyn Force, x: &[Vec3], memory: &[f64]) -> (f64, [Vec<Vec3>; 3
 /// Whatever cells have which law, forces, energies and tangents are those of a body with these materials.
 #[test]
 fn cells_have_the_law_that_memory_says() {
-    for element in ["tet4", "hex8", "prism6", "mixed"] {
-        let mesh = bar(element);
+    let bars = ["tet4", "hex8", "prism6", "mixed"].map(|element| (bar(element), Section::Solid));
+    for (mesh, section) in bars.into_iter().chain(sheets()) {
         let count = mesh.cell_count();
-        let force = adaptive(&mesh, &[(Criterion::Length, 0.1)], 0.5);
-        let x = bent(&mesh);
+        let force = adaptive_section(&mesh, section, &[(Criterion::Length, 0.1)], 0.5);
+        let x = if section == Section::Solid { bent(&mesh) } else { bent_section(&mesh, section) };
+        let element = format!("{} in {section:?}", mesh.blocks[0].kind);
         let patterns: [(&str, &dyn Fn(usize) -> bool); 4] = [
             ("none", &|_| false),
             ("all", &|_| true),
@@ -104,7 +143,8 @@ fn cells_have_the_law_that_memory_says() {
             let mut memory: Vec<f64> = of_cell.iter().map(|law| f64::from(*law)).collect();
             memory.extend([0.0, 0.0]);
             let laws = laws();
-            let fixed = SolidForce::new(&describe(&mesh, &laws, &of_cell)).unwrap();
+            let description = SolidDescription { section, ..describe(&mesh, &laws, &of_cell) };
+            let fixed = SolidForce::new(&description).unwrap();
             let (energy, expected) = answers(&fixed, &x, &[]);
             let (found_energy, found) = answers(&force, &x, &memory);
             // sums of the same terms in another order
@@ -180,5 +220,45 @@ fn lower_thresholds_switch_more() {
         let counts = [1e-9, 0.015, 0.03, 0.06, 10.0].map(switched);
         assert!(counts.is_sorted_by(|a, b| a >= b), "{criterion:?}: {counts:?}");
         assert!(counts[0] > counts[3] && counts[4] == 0.0, "{criterion:?}: {counts:?}");
+    }
+}
+
+/// Surface elements switch by every criterion as volumes do: the lower a threshold the more of them; those switch whose excess, asked cell by
+/// cell, is above one; and what a switch takes is in the memory.
+#[test]
+fn surface_elements_switch_by_every_criterion() {
+    for (mesh, section) in sheets() {
+        let (x, v) = (bent_section(&mesh, section), vec![Vec3::ZERO; mesh.points.len()]);
+        let count = mesh.cell_count();
+        for criterion in [Criterion::Length, Criterion::Volume, Criterion::Shape, Criterion::Force] {
+            let name = format!("{criterion:?} of {} in {section:?}", mesh.blocks[0].kind);
+            let excesses = |threshold: f64| -> Vec<f64> {
+                let force = adaptive_section(&mesh, section, &[(criterion, threshold)], 0.0);
+                let memory = vec![0.0; force.memory_len()];
+                (0..count).map(|cell| force.adapted(cell, &at(&x, &v, &memory)).unwrap().excess).collect()
+            };
+            let of_unit = excesses(1.0);
+            let mut sorted = of_unit.clone();
+            sorted.sort_by(f64::total_cmp);
+            assert!(sorted[0] > 0.0 && sorted[count - 1].is_finite(), "{name}");
+            // between two neighbours in the middle
+            let threshold = 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
+            let force = adaptive_section(&mesh, section, &[(criterion, threshold)], 0.0);
+            let mut memory = vec![0.0; force.memory_len()];
+            let mut scratch = force.new_scratch();
+            let mut total = |memory: &[f64]| {
+                let energy = force.energy(&at(&x, &v, memory), &mut scratch);
+                energy.stored + energy.dissipated
+            };
+            let before = total(&memory);
+            force.end_step(&x, &mut memory);
+            assert!((total(&memory) - before).abs() < 1e-12 * before, "{name}");
+            for (cell, excess) in of_unit.iter().enumerate() {
+                // cells of one shape may lie on the threshold together
+                if (excess / threshold - 1.0).abs() > 1e-9 {
+                    assert_eq!(memory[cell] != 0.0, *excess > threshold, "{name}: {cell} by {excess}");
+                }
+            }
+        }
     }
 }

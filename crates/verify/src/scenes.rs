@@ -3,6 +3,7 @@
 /// `(name, text)` of every scene in `scenes/`.
 pub const SCENES: &[(&str, &str)] = &[
     ("adaptive_bar", include_str!("../../../scenes/adaptive_bar/scene.toml")),
+    ("adaptive_strip", include_str!("../../../scenes/adaptive_strip/scene.toml")),
     ("agglomerate", include_str!("../../../scenes/agglomerate/scene.toml")),
     ("arm", include_str!("../../../scenes/arm/scene.toml")),
     ("any_body", include_str!("../../../scenes/any_body/scene.toml")),

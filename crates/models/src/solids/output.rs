@@ -76,7 +76,7 @@ impl SolidForce {
 
     /// The deformation gradient with what the section says of the directions across, of bars in their own frame; and whether
     /// it is that of a cable that is slack.
-    fn completed(&self, cell: usize, F: Mat3) -> (Mat3, bool) {
+    pub(super) fn completed(&self, cell: usize, F: Mat3) -> (Mat3, bool) {
         if self.section == Section::Solid {
             return (F, false);
         }

@@ -354,13 +354,18 @@ fn check_together(draft: &Draft, body: &Body) {
         ("frames", body.frames.is_some()),
         ("levels", body.levels.is_some()),
         ("octree", body.octree.is_some()),
-        ("section", body.section.is_some()),
+        // edges have no area and no faces
+        ("section", body.section().dimension() == 1),
         ("regions", !body.regions.is_empty()),
         ("formulation", body.formulation.is_some()),
     ];
     for (other, _) in others.into_iter().filter(|(_, is_there)| *is_there) {
         let message = format!("body `{}` has `{other}`, and its elements cannot adapt besides", body.name);
-        report(&adapt.site, message, "`adapt` in a body of volumes with one material");
+        report(
+            &adapt.site,
+            message,
+            "`adapt` in a body of volumes or of surface elements, with one material",
+        );
     }
 }
 

@@ -27,6 +27,36 @@ const BAR: Case = Case {
     mutation: "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, volume = 1e9 }",
 };
 
+/// Tips of the strip of triangles, by the same program.
+const STRIP_OF_SECOND: f64 = -0.259_510_663_941_550;
+const STRIP_OF_FIRST: f64 = -0.273_763_714_239_030;
+
+const STRIP: Case = Case {
+    scene: "adaptive_strip",
+    reference: STRIP_OF_SECOND,
+    source: "the strip under one law alone by an independent program",
+    mutation: "bodies.strip.adapt.material.poissons_ratio=0.3001",
+    ..BAR
+};
+
+/// No triangle of it over a threshold.
+const NOT_BY_AREA: &str = "bodies.strip.adapt.volume=1e9";
+const NOT_BY_LENGTH: &str = "bodies.strip.adapt.edge_length=1e9";
+
+/// The strip with one criterion at a tenth of what any triangle has, so that all have the second law at the end.
+macro_rules! everywhere {
+    ($id:literal, $capability:literal, $what:literal, $criterion:literal) => {
+        Case {
+            id: $id,
+            capabilities: &[$capability, "FAU-65"],
+            what: $what,
+            settings: &[NOT_BY_AREA, NOT_BY_LENGTH, concat!("bodies.strip.adapt.", $criterion)],
+            tolerance: Tolerance::Relative(1e-8),
+            ..STRIP
+        }
+    };
+}
+
 /// The bar with one criterion at one threshold.
 macro_rules! threshold {
     ($size:literal, $criterion:literal) => {
@@ -172,6 +202,50 @@ pub(super) const CASES: &[Case] = &[
         source: "specification, EXP-34: the free end turns, which the volume sees",
         mutation: NEVER,
         ..BAR
+    },
+    everywhere!(
+        "adapted_strip_by_length",
+        "FAU-61",
+        "tip of a strip of triangles whose sides switch all of them",
+        "edge_length=1e-9"
+    ),
+    everywhere!("adapted_strip_by_area", "FAU-62", "the same by their areas", "volume=1e-12"),
+    everywhere!("adapted_strip_by_shape", "FAU-63", "the same by their shapes", "shape=1e-12"),
+    everywhere!("adapted_strip_by_force", "FAU-64", "the same by the forces on their corners", "force=1e-9"),
+    Case {
+        id: "adapted_strip_nowhere",
+        capabilities: &["FAU-65"],
+        what: "the same where none ever switches",
+        settings: &[NOT_BY_AREA, NOT_BY_LENGTH],
+        reference: STRIP_OF_FIRST,
+        tolerance: Tolerance::Relative(1e-8),
+        mutation: "bodies.strip.adapt.edge_length=0.015",
+        ..STRIP
+    },
+    Case {
+        id: "adapted_strip_at_the_free_end",
+        capabilities: &["FAU-62", "FAU-65"],
+        what: "share of the strip's free end with the second law, by changes of area",
+        settings: &[NOT_BY_LENGTH],
+        reading: Reading::last("at_the_free_end"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(1e-9),
+        source: "Faure 2014, fig. 6.26: the free end turns, which the area sees",
+        mutation: NOT_BY_AREA,
+        ..STRIP
+    },
+    Case {
+        id: "adapted_strip_at_the_clamp",
+        capabilities: &["FAU-61", "FAU-65"],
+        what: "share of its clamped end with it, by changes of length",
+        settings: &[NOT_BY_AREA],
+        reading: Reading::last("at_the_clamp"),
+        // the middle of the section is neither stretched nor pressed
+        reference: 0.5,
+        tolerance: Tolerance::AtLeast,
+        source: "Faure 2014, fig. 6.26: the clamped end stretches, which edges see",
+        mutation: "bodies.strip.adapt.edge_length=0.06",
+        ..STRIP
     },
     Case {
         id: "exp34_at_the_clamp",

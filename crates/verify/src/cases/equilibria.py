@@ -1,7 +1,7 @@
 """Equilibria by a program of its own, for the rows of `souple verify` that name it.
 
-Hexahedra of eight nodes and eight Gauss points, or 27, under Hooke's, St. Venant-Kirchhoff's and Ogden's laws, by Newton's method;
-numpy and scipy alone. `python3 equilibria.py` takes a minute and prints the tip of the bent bar (`adaptive_bar`), the forces on
+Hexahedra of eight nodes and eight Gauss points, or 27, under Hooke's, St. Venant-Kirchhoff's and Ogden's laws, and triangles in plane
+stress under the first two, by Newton's method; numpy and scipy alone. `python3 equilibria.py` takes a minute and prints the tip of the bent bar (`adaptive_bar`), of the bent strip (`adaptive_strip`), the forces on
 the pressed and the pulled pad (`pressed_pad`, `pulled_pad`), the waist of the stretched cube and the free face of the hanging one.
 """
 
@@ -168,6 +168,61 @@ def cube():
     print(f"free face of the hanging cube: {along:.12f} m along it, {down:.12f} m upward")
 
 
+def strip():
+    """In plane stress both laws are themselves with lambda* = 2 lambda mu / (lambda + 2 mu): no stress across makes the strain across."""
+    along, across, thickness = 48, 6, 0.1
+    points = np.array([[i / along, 0.1 * j / across] for j in range(across + 1) for i in range(along + 1)])
+    number = lambda i, j: i + (along + 1) * j
+    triangles = []
+    for j, i in itertools.product(range(across), range(along)):
+        a, b, c, d = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+        triangles += [[a, b, c], [a, c, d]] if (i + j) % 2 == 0 else [[a, b, d], [b, c, d]]
+    triangles = np.array(triangles)
+    mu, lam = lame(5e6, 0.3)
+    lam = 2 * lam * mu / (lam + 2 * mu)
+    edges = np.swapaxes(points[triangles[:, 1:]] - points[triangles[:, :1]], -1, -2)
+    inverse, area = np.linalg.inv(edges), np.linalg.det(edges) / 2
+    g = np.einsum("ak,ckj->caj", np.array([[-1, -1], [1, 0], [0, 1]]), inverse)
+    mass = np.bincount(triangles.ravel(), np.repeat(1000 * thickness * area / 3, 3))
+    dofs = (2 * triangles[:, :, None] + np.arange(2)).reshape(-1, 6)
+    rows, columns = np.repeat(dofs, 6, axis=1).ravel(), np.tile(dofs, (1, 6)).ravel()
+    free = np.flatnonzero(np.repeat(points[:, 0] > 1e-9, 2))
+    tip = number(along, across // 2)
+    one = np.eye(2)
+
+    def stress(law, F):
+        if law == "Hooke":
+            e = (F + np.swapaxes(F, -1, -2)) / 2 - one
+            return 2 * mu * e + lam * np.trace(e, axis1=-2, axis2=-1)[..., None, None] * one
+        E = (np.swapaxes(F, -1, -2) @ F - one) / 2
+        return F @ (2 * mu * E + lam * np.trace(E, axis1=-2, axis2=-1)[..., None, None] * one)
+
+    u = np.zeros(2 * len(points))
+    for law in ["Hooke", "St. Venant-Kirchhoff"]:
+        u[:] = 0
+        for part in [0.25, 0.5, 0.75, 1.0]:
+            load = np.zeros((len(points), 2))
+            load[:, 1] = -9.81 * part * mass
+            for _ in range(60):
+                F = np.einsum("cai,caj->cij", u.reshape(-1, 2)[triangles], g) + one
+                forces = np.einsum("c,cij,caj->cai", thickness * area, stress(law, F), g)
+                internal = np.bincount(dofs.ravel(), forces.ravel(), minlength=u.size)
+                residual = (load.ravel() - internal)[free]
+                if np.abs(residual).max() < 1e-12 * np.abs(internal).max():
+                    break
+                A = np.zeros((len(F), 2, 2, 2, 2))
+                for k, l in itertools.product(range(2), range(2)):
+                    D = np.zeros((2, 2))
+                    D[k, l] = h = 1e-4
+                    d = 8 * (stress(law, F + D) - stress(law, F - D)) - (stress(law, F + 2 * D) - stress(law, F - 2 * D))
+                    A[..., k, l] = d / (12 * h)
+                blocks = np.einsum("c,cijkl,caj,cbl->caibk", thickness * area, A, g, g)
+                K = coo_matrix((blocks.ravel(), (rows, columns)), shape=(u.size, u.size)).tocsr()
+                u[free] += spsolve(K[free][:, free], residual)
+        print(f"tip of the strip, {law}: {u[2 * tip + 1]:.15f} m")
+
+
 bar()
+strip()
 pad()
 cube()

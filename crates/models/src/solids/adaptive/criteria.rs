@@ -13,12 +13,12 @@ use souple_mesh::{ElementKind, MAX_NODES, QuadratureRule};
 pub enum Criterion {
     /// `R_L`: the greatest change of length of an edge, relative.
     Length,
-    /// `R_A`: the change of volume, relative. Under small strain it tells rotation: `tan²θ`.
+    /// `R_A`: the change of volume, of a surface element that of area, relative. Under small strain it tells rotation: `tan²θ`.
     Volume,
-    /// `R_F`: the greatest growth of the shape factor of a triangle of three corners of a face, circumradius over twice the
-    /// inradius, relative.
+    /// `R_F`: the greatest growth of the shape factor of a triangle of three corners of a face, of a surface element its own, circumradius
+    /// over twice the inradius, relative.
     Shape,
-    /// `R_S`: the mean over the volume of the field of nodal forces of the element [N].
+    /// `R_S`: the mean over the volume, of a surface element over the area, of the field of nodal forces of the element [N].
     Force,
 }
 
@@ -26,12 +26,24 @@ pub enum Criterion {
 pub struct Element<'a> {
     pub kind: ElementKind,
     pub rule: &'a QuadratureRule,
+    /// Of a volume one, of a surface element its thickness [m].
+    pub thickness: f64,
     pub rest: &'a [Vec3],
     pub now: &'a [Vec3],
 }
 
+/// The corners of the faces of a volume, of a surface element all of its own.
+pub fn faces(kind: ElementKind) -> impl Iterator<Item = &'static [u8]> {
+    const ALL: &[u8] = &[0, 1, 2, 3];
+    let is_surface = kind.dimension() == 2;
+    let own = is_surface.then(|| &ALL[..kind.corner_count().min(ALL.len())]);
+    let of_volume = if is_surface { &[][..] } else { kind.faces() };
+    own.into_iter().chain(of_volume.iter().map(|face| &face.nodes[..face.kind.corner_count()]))
+}
+
 impl Element<'_> {
-    /// A criterion; `stress` gives the first Piola–Kirchhoff stress of a deformation gradient.
+    /// A criterion; `stress` gives the first Piola–Kirchhoff stress of a deformation gradient, of a surface element of one that knows
+    /// nothing across.
     pub fn measure(&self, criterion: Criterion, stress: impl Fn(&Mat3) -> Mat3) -> f64 {
         match criterion {
             Criterion::Length => self.length(),
@@ -56,8 +68,7 @@ impl Element<'_> {
 
     fn shape(&self) -> f64 {
         let mut most: f64 = 0.0;
-        for face in self.kind.faces() {
-            let corners = &face.nodes[..face.kind.corner_count()];
+        for corners in faces(self.kind) {
             for at in 0..corners.len() {
                 let three = [0, 1, 2].map(|i| usize::from(corners[(at + i) % corners.len()]));
                 let growth =
@@ -89,14 +100,16 @@ impl Element<'_> {
         sum / self.volume(self.now).max(0.0)
     }
 
-    /// Calls `visit(F, X_ξ⁻¹, volume, ξ)` at every sample.
+    /// Calls `visit(F, X_ξ⁻¹, volume, ξ)` at every sample; of a surface element `F` is zero across.
     pub fn at_samples(&self, mut visit: impl FnMut(Mat3, Mat3, f64, Vec3)) {
         for point in &self.rule.points {
             let jacobian = self.kind.jacobian(self.rest, point.position);
             // cells without volume were refused when the body was made
             let Some(inverse) = jacobian.try_inverse() else { continue };
-            let F = self.kind.jacobian(self.now, point.position) * inverse;
-            visit(F, inverse, jacobian.determinant() * point.weight, point.position);
+            let mut now = self.kind.jacobian(self.now, point.position);
+            now.columns[self.kind.dimension()..].fill(Vec3::ZERO);
+            let volume = jacobian.determinant() * point.weight * self.thickness;
+            visit(now * inverse, inverse, volume, point.position);
         }
     }
 }
@@ -119,7 +132,7 @@ mod tests {
     fn of(kind: ElementKind, F: &Mat3, criterion: Criterion) -> f64 {
         let rest = kind.regular();
         let now: Vec<Vec3> = rest.iter().map(|x| *F * *x).collect();
-        let element = Element { kind, rule: kind.default_rule(), rest: &rest, now: &now };
+        let element = Element { kind, rule: kind.default_rule(), thickness: 0.01, rest: &rest, now: &now };
         // Hooke's law with μ = 1, λ = 0
         element.measure(criterion, |F| (*F + F.transpose()).plus_diagonal(-2.0))
     }
@@ -173,5 +186,23 @@ mod tests {
         // P = 2 μ 0.01, and the volume has grown
         let expected = 0.02 / 4.0 / 3.0_f64.sqrt() / 1.01;
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    }
+
+    /// A sheet that is stretched by a tenth both ways and turned out of its plane has a fifth more area, and rounder triangles nowhere; pulled
+    /// along one side its triangles get longer.
+    #[test]
+    fn surface_elements() {
+        use Criterion::{Length, Shape, Volume};
+        let turn = exponential(Vec3::new(0.3, -1.0, 0.5));
+        for kind in [ElementKind::Tri3, ElementKind::Quad4, ElementKind::Tri6, ElementKind::Quad9] {
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+            let stretched = turn * 1.1;
+            assert!(near(of(kind, &stretched, Length), 0.1), "{kind}");
+            assert!(near(of(kind, &stretched, Volume), 0.21), "{kind}");
+            assert!(near(of(kind, &stretched, Shape), 0.0), "{kind}");
+            assert!([Length, Volume, Shape].iter().all(|criterion| near(of(kind, &turn, *criterion), 0.0)));
+            let pulled = Mat3::from_diagonal(Vec3::new(1.5, 1.0, 1.0));
+            assert!(near(of(kind, &pulled, Volume), 0.5) && of(kind, &pulled, Shape) > 0.05, "{kind}");
+        }
     }
 }

@@ -4,7 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 use souple_math::{Lanes, Padded, Real, Vec3};
 use souple_mesh::{ElementKind, MAX_NODES};
 
-use super::criteria::{Criterion, shape_factor};
+use super::criteria::{Criterion, faces, shape_factor};
 use crate::solids::geometry::{AnyElement, Geometry};
 use crate::solids::group::{Group, for_each_group};
 use crate::solids::layout::{Chunk, LANES};
@@ -56,7 +56,7 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
         for_each_group!(simd, chunk, nodes, samples, 0..blocks, N, |group| {
             let x = group.gather(now);
             let measured = match criterion {
-                Criterion::Volume => volume(&group, &x, reference),
+                Criterion::Volume => volume(kind, &group, &x, reference),
                 Criterion::Length => length(kind, &group.gather(rest), &x),
                 Criterion::Shape => shape(kind, &group.gather(rest), &x),
                 Criterion::Force => unreachable!("its law is asked cell by cell"),
@@ -72,9 +72,10 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
     }
 }
 
-// |Σ ω det F / Σ ω - 1|
+// |Σ ω det F / Σ ω - 1|, where of a surface element det F is the ratio of areas
 #[inline(always)]
 fn volume<S: Simd, const N: usize>(
+    kind: ElementKind,
     group: &Group<'_, S, N>,
     x: &[Vec3<Lanes<S>>; N],
     reference: &[Vec3],
@@ -85,7 +86,11 @@ fn volume<S: Simd, const N: usize>(
     for sample in 0..group.samples {
         let (inverse, volume) = group.sample(sample);
         let J = AnyElement::gradient(&x[..nodes], &reference[sample * nodes..(sample + 1) * nodes]);
-        now += volume * (J.determinant() * inverse.determinant());
+        let of_now = match kind.dimension() {
+            2 => J.columns[0].cross(J.columns[1]).length(),
+            _ => J.determinant(),
+        };
+        now += volume * (of_now * inverse.determinant());
         rest += volume;
     }
     (now / rest - 1.0).abs()
@@ -115,8 +120,7 @@ fn no_number<R: Real>(sum: R) -> R {
 #[inline(always)]
 fn shape<R: Real>(kind: ElementKind, rest: &[Vec3<R>], now: &[Vec3<R>]) -> R {
     let (mut most, mut sum) = (rest[0].x.zero(), rest[0].x.zero());
-    for face in kind.faces() {
-        let corners = &face.nodes[..face.kind.corner_count()];
+    for corners in faces(kind) {
         for at in 0..corners.len() {
             let (a, b, c) = (
                 usize::from(corners[at]),

@@ -17,7 +17,7 @@ use souple_engine::state::Pair;
 use souple_engine::{
     Adapted, CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
 };
-use souple_math::{Padded, Vec3};
+use souple_math::{Mat3, Padded, Vec3};
 use souple_mesh::{MAX_NODES, Mesh};
 use souple_solve::BlockMatrix;
 
@@ -32,7 +32,7 @@ use super::kernel::Kernel;
 use super::layout::{Chunk, LANES};
 use super::parallel;
 use super::stiffness::Shapes;
-use super::{FlatCell, Kernels, Section, SolidDescription, SolidForce};
+use super::{FlatCell, Kernels, SolidDescription, SolidForce};
 use crate::materials::Material;
 
 /// When elements change their law.
@@ -78,7 +78,7 @@ thread_local! {
 type SolidBatch = Batch<Box<dyn Kernel>>;
 
 impl AdaptiveForce {
-    /// Of a body of volumes; all its cells have the same pair of laws, and `description` knows the first.
+    /// Of a body of volumes or of surface elements; all its cells have the same pair of laws, and `description` knows the first.
     ///
     /// # Errors
     /// A cell is flat or inverted at rest.
@@ -92,7 +92,6 @@ impl AdaptiveForce {
             materials: std::slice::from_ref(law),
             material_of_cell: &material_of_cell,
             axes: &[],
-            section: Section::Solid,
             ..description.clone()
         };
         let laws = laws.map(|law| law.of_table());
@@ -132,13 +131,10 @@ impl AdaptiveForce {
         visit(&Element {
             kind: of_mesh.kind,
             rule: self.solids[0].quadrature().rule(of_mesh.kind),
+            thickness: self.solids[0].section.measure(),
             rest: &rest[..count],
             now: &now[..count],
         })
-    }
-
-    fn material(&self, law: usize) -> &Material {
-        self.solids[law].material(0)
     }
 
     /// The greatest criterion of a cell over its threshold; what has no number any more is over any.
@@ -155,8 +151,9 @@ impl AdaptiveForce {
         (criterion, threshold): (Criterion, f64),
         positions: &[Vec3],
     ) -> f64 {
-        let material = self.material(law);
-        let measure = |element: &Element| element.measure(criterion, |F| material.stress(F));
+        let solid = &self.solids[law];
+        let stress = |F: &Mat3| solid.material(0).stress(&solid.completed(cell, *F).0);
+        let measure = |element: &Element| element.measure(criterion, stress);
         let over = self.with_cell(cell, positions, measure) / threshold;
         if over.is_nan() { f64::INFINITY } else { over }
     }
@@ -195,10 +192,12 @@ impl AdaptiveForce {
 
     /// Stored energy of a cell under a law [J].
     fn energy_of(&self, cell: usize, law: usize, positions: &[Vec3]) -> f64 {
-        let material = self.material(law);
+        let solid = &self.solids[law];
         self.with_cell(cell, positions, |element| {
             let mut sum = 0.0;
-            element.at_samples(|F, _, volume, _| sum += volume * material.energy_density(&F));
+            element.at_samples(|F, _, volume, _| {
+                sum += volume * solid.material(0).energy_density(&solid.completed(cell, F).0);
+            });
             sum
         })
     }
