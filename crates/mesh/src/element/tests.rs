@@ -318,7 +318,9 @@ fn shape_functions_on_faces_are_those_of_the_face() {
 /// alone do not.
 #[test]
 fn crooked_cells_hold_quadratics() {
-    let shift = |x: Vec3| Vec3::new((3.0 * x.x + x.y).sin(), (2.0 * x.y - x.z).cos(), (x.x * x.z).sin());
+    let shift = |x: Vec3| {
+        Vec3::new((3.0 * x.x + x.y + 0.5).sin(), (2.0 * x.y - x.x + 0.3).cos(), (x.x * x.z + x.y + 0.7).sin())
+    };
     let field = |x: Vec3| 1.0 + x.x - 2.0 * x.y + x.x * x.x - x.y * x.z + 3.0 * x.z * x.z + x.x * x.y;
     for (name, is_exact) in [("quad8", false), ("quad9", true), ("hex20", false), ("hex27", true)] {
         let kind = ElementKind::from_name(name).unwrap();

@@ -43,15 +43,18 @@ const STRIP: Case = Case {
 const NOT_BY_AREA: &str = "bodies.strip.adapt.volume=1e9";
 const NOT_BY_LENGTH: &str = "bodies.strip.adapt.edge_length=1e9";
 
-/// The strip with one criterion at a tenth of what any triangle has, so that all have the second law at the end.
-macro_rules! everywhere {
-    ($id:literal, $capability:literal, $what:literal, $criterion:literal) => {
+/// The strip with one criterion alone, and its tip by that program, which changes laws by the same criterion: no triangle is so near to its
+/// threshold, a thousandth, that what Newton's method leaves could change its law.
+macro_rules! mixture {
+    ($id:literal, $capability:literal, $what:literal, $criterion:literal, $tip:literal) => {
         Case {
             id: $id,
             capabilities: &[$capability, "FAU-65"],
             what: $what,
             settings: &[NOT_BY_AREA, NOT_BY_LENGTH, concat!("bodies.strip.adapt.", $criterion)],
+            reference: $tip,
             tolerance: Tolerance::Relative(1e-8),
+            source: "the same mixture of laws by an independent program",
             ..STRIP
         }
     };
@@ -203,15 +206,42 @@ pub(super) const CASES: &[Case] = &[
         mutation: NEVER,
         ..BAR
     },
-    everywhere!(
+    mixture!(
         "adapted_strip_by_length",
         "FAU-61",
-        "tip of a strip of triangles whose sides switch all of them",
-        "edge_length=1e-9"
+        "tip of a strip of triangles that change law where a side changes by 1.5 %",
+        "edge_length=0.015",
+        -0.251_455_110_364_332
     ),
-    everywhere!("adapted_strip_by_area", "FAU-62", "the same by their areas", "volume=1e-12"),
-    everywhere!("adapted_strip_by_shape", "FAU-63", "the same by their shapes", "shape=1e-12"),
-    everywhere!("adapted_strip_by_force", "FAU-64", "the same by the forces on their corners", "force=1e-9"),
+    mixture!(
+        "adapted_strip_by_area",
+        "FAU-62",
+        "the same where the area does",
+        "volume=0.015",
+        -0.238_392_972_469_611
+    ),
+    mixture!(
+        "adapted_strip_by_shape",
+        "FAU-63",
+        "the same where the shape factor grows by 1 %",
+        "shape=0.01",
+        -0.245_468_787_551_150
+    ),
+    mixture!(
+        "adapted_strip_by_force",
+        "FAU-64",
+        "the same where the forces on the corners are 20 N in the mean",
+        "force=20",
+        -0.207_767_933_495_040
+    ),
+    Case {
+        id: "adapted_strip_everywhere",
+        capabilities: &["FAU-65"],
+        what: "the same where all triangles soon have the second law",
+        settings: &["bodies.strip.adapt.edge_length=1e-9"],
+        tolerance: Tolerance::Relative(1e-8),
+        ..STRIP
+    },
     Case {
         id: "adapted_strip_nowhere",
         capabilities: &["FAU-65"],

@@ -169,7 +169,8 @@ def cube():
 
 
 def strip():
-    """In plane stress both laws are themselves with lambda* = 2 lambda mu / (lambda + 2 mu): no stress across makes the strain across."""
+    """Triangles in plane stress, where both laws are themselves with lambda* = 2 lambda mu / (lambda + 2 mu), for no stress across says what the
+    strain across is. One law everywhere, then Hooke's where triangles have not been over a threshold at an equilibrium before, 20 in turn."""
     along, across, thickness = 48, 6, 0.1
     points = np.array([[i / along, 0.1 * j / across] for j in range(across + 1) for i in range(along + 1)])
     number = lambda i, j: i + (along + 1) * j
@@ -183,43 +184,78 @@ def strip():
     edges = np.swapaxes(points[triangles[:, 1:]] - points[triangles[:, :1]], -1, -2)
     inverse, area = np.linalg.inv(edges), np.linalg.det(edges) / 2
     g = np.einsum("ak,ckj->caj", np.array([[-1, -1], [1, 0], [0, 1]]), inverse)
-    mass = np.bincount(triangles.ravel(), np.repeat(1000 * thickness * area / 3, 3))
+    load = np.zeros((len(points), 2))
+    load[:, 1] = -9.81 * np.bincount(triangles.ravel(), np.repeat(1000 * thickness * area / 3, 3))
     dofs = (2 * triangles[:, :, None] + np.arange(2)).reshape(-1, 6)
     rows, columns = np.repeat(dofs, 6, axis=1).ravel(), np.tile(dofs, (1, 6)).ravel()
     free = np.flatnonzero(np.repeat(points[:, 0] > 1e-9, 2))
     tip = number(along, across // 2)
     one = np.eye(2)
 
-    def stress(law, F):
-        if law == "Hooke":
-            e = (F + np.swapaxes(F, -1, -2)) / 2 - one
-            return 2 * mu * e + lam * np.trace(e, axis1=-2, axis2=-1)[..., None, None] * one
-        E = (np.swapaxes(F, -1, -2) @ F - one) / 2
-        return F @ (2 * mu * E + lam * np.trace(E, axis1=-2, axis2=-1)[..., None, None] * one)
+    def stress(is_second, F):
+        H = F - one
+        E = (H + np.swapaxes(H, -1, -2) + is_second[:, None, None] * (np.swapaxes(H, -1, -2) @ H)) / 2
+        S = 2 * mu * E + lam * np.trace(E, axis1=-2, axis2=-1)[..., None, None] * one
+        return S + is_second[:, None, None] * (H @ S)
 
-    u = np.zeros(2 * len(points))
-    for law in ["Hooke", "St. Venant-Kirchhoff"]:
-        u[:] = 0
-        for part in [0.25, 0.5, 0.75, 1.0]:
-            load = np.zeros((len(points), 2))
-            load[:, 1] = -9.81 * part * mass
-            for _ in range(60):
-                F = np.einsum("cai,caj->cij", u.reshape(-1, 2)[triangles], g) + one
-                forces = np.einsum("c,cij,caj->cai", thickness * area, stress(law, F), g)
-                internal = np.bincount(dofs.ravel(), forces.ravel(), minlength=u.size)
-                residual = (load.ravel() - internal)[free]
-                if np.abs(residual).max() < 1e-12 * np.abs(internal).max():
-                    break
-                A = np.zeros((len(F), 2, 2, 2, 2))
-                for k, l in itertools.product(range(2), range(2)):
-                    D = np.zeros((2, 2))
-                    D[k, l] = h = 1e-4
-                    d = 8 * (stress(law, F + D) - stress(law, F - D)) - (stress(law, F + 2 * D) - stress(law, F - 2 * D))
-                    A[..., k, l] = d / (12 * h)
-                blocks = np.einsum("c,cijkl,caj,cbl->caibk", thickness * area, A, g, g)
-                K = coo_matrix((blocks.ravel(), (rows, columns)), shape=(u.size, u.size)).tocsr()
-                u[free] += spsolve(K[free][:, free], residual)
-        print(f"tip of the strip, {law}: {u[2 * tip + 1]:.15f} m")
+    def solved(is_second, u):
+        for _ in range(60):
+            F = np.einsum("cai,caj->cij", u.reshape(-1, 2)[triangles], g) + one
+            forces = np.einsum("c,cij,caj->cai", thickness * area, stress(is_second, F), g)
+            internal = np.bincount(dofs.ravel(), forces.ravel(), minlength=u.size)
+            residual = (load.ravel() - internal)[free]
+            if np.abs(residual).max() < 1e-12 * np.abs(internal).max():
+                return u, F, forces
+            A = np.zeros((len(F), 2, 2, 2, 2))
+            for k, l in itertools.product(range(2), range(2)):
+                D = np.zeros((2, 2))
+                D[k, l] = h = 1e-4
+                at = lambda n: stress(is_second, F + n * D)
+                A[..., k, l] = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h)
+            blocks = np.einsum("c,cijkl,caj,cbl->caibk", thickness * area, A, g, g)
+            K = coo_matrix((blocks.ravel(), (rows, columns)), shape=(u.size, u.size)).tocsr()
+            u = u.copy()
+            u[free] += spsolve(K[free][:, free], residual)
+        raise RuntimeError("no equilibrium")
+
+    def sides(x):
+        corners = x[triangles]
+        return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+
+    def factor(x):
+        a, b, c = sides(x).T
+        s = (a + b + c) / 2
+        return a * b * c / 8 / ((s - a) * (s - b) * (s - c))
+
+    def length(x, F, forces):
+        return np.abs(sides(x) / sides(points) - 1).max(axis=1)
+
+    def of_area(x, F, forces):
+        return np.abs(np.linalg.det(F) - 1)
+
+    def shape(x, F, forces):
+        return np.maximum(factor(x) / factor(points) - 1, 0)
+
+    def force(x, F, forces):
+        samples = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
+        field = np.linalg.norm(np.einsum("qa,cai->cqi", samples, forces), axis=2)
+        return field.mean(axis=1) / np.linalg.det(F)
+
+    none, all_of_them = np.zeros(len(triangles)), np.ones(len(triangles))
+    for name, laws in [("Hooke", none), ("St. Venant-Kirchhoff", all_of_them)]:
+        u, _, _ = solved(laws, np.zeros(2 * len(points)))
+        print(f"tip of the strip, {name}: {u[2 * tip + 1]:.15f} m")
+    for criterion, threshold in [(length, 0.015), (of_area, 0.015), (shape, 0.01), (force, 20.0)]:
+        laws, u = none, np.zeros(2 * len(points))
+        for step in range(20):
+            u, F, forces = solved(laws, u)
+            over = criterion(points + u.reshape(-1, 2), F, forces) / threshold
+            if step < 19:
+                laws = np.maximum(laws, over > 1)
+        near = np.abs(over - 1).min()
+        share = np.average(laws, weights=area)
+        name = f"{criterion.__name__} {threshold}"
+        print(f"tip of the strip, {name}: {u[2 * tip + 1]:.15f} m, share {share:.6f}, nearest to the threshold {near:.1e}")
 
 
 bar()
