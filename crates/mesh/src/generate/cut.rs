@@ -23,24 +23,28 @@ pub(super) enum Cut {
     Mixed,
 }
 
+/// Names of cells; the last one is of grids of cubes alone.
+const CHOICES: [&str; 13] = [
+    "tet4",
+    "hex8",
+    "prism6",
+    "pyramid5",
+    "mixed",
+    "tet10",
+    "hex20",
+    "hex27",
+    "prism15",
+    "pyramid13",
+    "mixed_quadratic",
+    "tet4_centred",
+    "tet4_mirrored",
+];
+
 impl Cut {
     pub(super) const PARAMETER: Parameter = Parameter {
         name: "element",
         summary: "kind of cells; `mixed` has all four kinds, conforming; `tet4_centred` are twelve tetrahedra around the centre of each cube",
-        kind: Kind::Choice(&[
-            "tet4",
-            "hex8",
-            "prism6",
-            "pyramid5",
-            "mixed",
-            "tet10",
-            "hex20",
-            "hex27",
-            "prism15",
-            "pyramid13",
-            "mixed_quadratic",
-            "tet4_centred",
-        ]),
+        kind: Kind::Choice(CHOICES.split_at(CHOICES.len() - 1).0),
         unit: "",
         range: souple_table::Range::ANY,
         default: Some(Value::Text("tet4")),
@@ -49,20 +53,7 @@ impl Cut {
     /// Of grids of cubes, which know where each cube is.
     pub(super) const PARAMETER_OF_GRIDS: Parameter = Parameter {
         summary: "kind of cells; `mixed` has all four kinds, conforming; `tet4_centred` are twelve tetrahedra around the centre of each cube, `tet4_mirrored` six as of `tet4`, in every second cube along each axis mirrored",
-        kind: Kind::Choice(&[
-            "tet4",
-            "hex8",
-            "prism6",
-            "pyramid5",
-            "mixed",
-            "tet10",
-            "hex20",
-            "prism15",
-            "pyramid13",
-            "mixed_quadratic",
-            "tet4_centred",
-            "tet4_mirrored",
-        ]),
+        kind: Kind::Choice(&CHOICES),
         ..Self::PARAMETER
     };
 
