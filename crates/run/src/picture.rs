@@ -83,7 +83,8 @@ mod tests {
     fn trace(name: &str, over: Option<&str>, components: usize, values: &[f64]) -> Trace {
         let times = (0..values.len() / components).map(|step| step as f64).collect();
         let (name, over) = (name.to_owned(), over.map(str::to_owned));
-        Trace { name, unit: "N", quantity: "reaction", over, components, times, values: values.to_vec() }
+        let values = values.to_vec();
+        Trace { name, unit: "N", quantity: "reaction", since: 0.0, over, components, times, values }
     }
 
     /// Over time, over the components of a vector, and all over one number.
