@@ -98,8 +98,10 @@ pub struct HeldPoints {
 /// The body with levels that has these rows.
 fn levels_of<'a>(system: &'a System, rows: &[u32]) -> Option<(usize, &'a dyn Levels)> {
     let first = *rows.first()? as usize;
-    let levels = |(index, force): (usize, &'a Box<dyn Force>)| force.levels().map(|levels| (index, levels));
-    system.forces.iter().enumerate().filter_map(levels).find(|(_, levels)| levels.rows().contains(&first))
+    let forces = system.forces.iter().map(AsRef::as_ref).enumerate();
+    let mut bodies =
+        forces.filter_map(|(index, force): (usize, &'a dyn Force)| Some((index, force.levels()?)));
+    bodies.find(|(_, levels)| levels.rows().contains(&first))
 }
 
 impl System {
