@@ -228,7 +228,7 @@ impl Carrier for HandCarrier {
             }
             let pressed = pressed(&self.pose(memory));
             self.move_tool(h, &pressed, state);
-            self.move_device(h, &mut memory[LEN..], state);
+            self.move_device(h, &memory[LEN..], state);
             Feeling::Tool(if self.rest.is_held {
                 Moving { place: state.held, velocity: Vec3::ZERO }
             } else {
@@ -239,7 +239,7 @@ impl Carrier for HandCarrier {
 
     fn advance_held(&self, felt: Vec3, told: f64, timestep: f64, memory: &mut [f64]) {
         self.tick_through(told, timestep, memory, &mut |h, memory, state| {
-            self.move_device(h, &mut memory[LEN..], state);
+            self.move_device(h, &memory[LEN..], state);
             // a device that is lost leaves its tool where it was
             if self.has_device(state) {
                 state.tool = state.arm.hand;
