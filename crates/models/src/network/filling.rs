@@ -336,7 +336,6 @@ impl Filling {
         least: f64,
         distance: impl Fn(Vec3) -> f64,
     ) -> (f64, Vec3) {
-        let BoundingBox { low, high } = self.bounds;
         let (mut best, mut step) = ((distance(seed), seed), pitch);
         let mut moves = 0;
         while step > FINEST * self.spacing && moves < MOST_MOVES {
