@@ -221,7 +221,10 @@ impl Filling {
         for (_, seed) in seeds {
             let mut is_known = balls.room(seed) <= self.spacing - pitch;
             ends.visit(seed, 1, |_, end| is_known |= (end - seed).length() < pitch);
-            while !is_known {
+            if is_known {
+                continue;
+            }
+            loop {
                 let (apart, place) =
                     surface.widest_near(shape, (seed, pitch), self.spacing, |place| balls.room(place));
                 let ball = (apart > self.spacing).then(|| self.below(shape, place)).flatten();
