@@ -999,7 +999,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "dermis_keeps_area",
         capabilities: &["JIM-34", "JIM-35", "JIM-89"],
-        what: "area of the ring of balls around an elastic kernel after its fall, over that before",
+        what: "area of the ring of balls around an elastic kernel after its fall, over that before, by an outline that bridges hollows which a ball of a metre's radius does not enter",
         scene: "elastic_kernel",
         reading: Reading::last("area").taking(Statistic::LastOver(200)),
         reference: 1.0,
