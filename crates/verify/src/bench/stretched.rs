@@ -3,22 +3,39 @@
 use super::timing::{Timing, as_it_is, median, scene, with_threads};
 use super::{Effort, Figure, value_of};
 
-/// Density [kg/m³], Young's modulus [Pa], the explicit step [s], the formulation of explicit forces where it is not the
-/// fastest, and how often implicit steps must win.
-///
+/// One way to follow the cube explicitly.
+struct Follow {
+    /// [kg/m³]
+    density: f64,
+    /// Young's modulus [Pa].
+    modulus: f64,
+    /// The explicit step [s].
+    step: f64,
+    /// Of explicit forces, where it is not the fastest.
+    formulation: Option<&'static str>,
+    /// How often implicit steps must win.
+    wanted: Option<f64>,
+}
+
 /// Fifty times for light stiff matter is said of the source's own forces, by grouped constants; forces by derived kernels, which
 /// take a third of the time, are printed beside it. The source's table has a tenth of the longest stable step for heavy soft matter, at
 /// which implicit steps win. At the longest one, which is what it is because the step grows with the density over the modulus, they need not.
-const CASES: [(f64, f64, f64, Option<&str>, Option<f64>); 4] = [
-    (1000.0, 1e5, 5e-5, Some("grouped_constants"), Some(50.0)),
-    (1000.0, 1e5, 5e-5, None, None),
-    (10_000.0, 1e4, 5e-4, None, Some(2.0)),
-    (10_000.0, 1e4, 5e-3, None, None),
+const CASES: [Follow; 4] = [
+    Follow {
+        density: 1000.0,
+        modulus: 1e5,
+        step: 5e-5,
+        formulation: Some("grouped_constants"),
+        wanted: Some(50.0),
+    },
+    Follow { density: 1000.0, modulus: 1e5, step: 5e-5, formulation: None, wanted: None },
+    Follow { density: 10_000.0, modulus: 1e4, step: 5e-4, formulation: None, wanted: Some(2.0) },
+    Follow { density: 10_000.0, modulus: 1e4, step: 5e-3, formulation: None, wanted: None },
 ];
 
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
-    for (density, modulus, step, formulation, wanted) in CASES {
+    for Follow { density, modulus, step, formulation, wanted } in CASES {
         let settings = |step: f64, stepper: &str| {
             vec![
                 format!("world.period={step}"),
