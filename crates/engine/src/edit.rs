@@ -75,10 +75,12 @@ pub enum EditError {
 impl Edit {
     /// Whether forces, their tangents or constraints are others afterwards, and not only where things are or go.
     pub fn changes_forces(&self) -> bool {
-        !matches!(
-            self,
-            Self::MoveHand { .. } | Self::Lead { .. } | Self::SetVelocity { .. } | Self::Push { .. }
-        )
+        match self {
+            Self::MoveHand { .. } | Self::Lead { .. } | Self::SetVelocity { .. } | Self::Push { .. } => false,
+            // what a body may look at changes nothing about how it pushes
+            Self::SetParameter { parameter, .. } => parameter != "budget",
+            _ => true,
+        }
     }
 
     fn system(&self) -> usize {

@@ -375,9 +375,9 @@ pub trait Force: Send + Sync {
         None
     }
 
-    /// Whether it acts within a body: its elasticity, its damping, and nothing from outside.
+    /// Whether it acts within one body: its elasticity, its damping, and nothing from outside.
     fn acts_within(&self) -> bool {
-        self.declaration().internal
+        false
     }
 
     /// What moves points by itself and feels what they resist with; `None` of a force that only acts on them.

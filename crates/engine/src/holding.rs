@@ -91,6 +91,8 @@ pub struct HeldPoints {
     /// By rate and point, where the forces of a body come at different dates [N].
     by_rate: Vec<Vec<Vec3>>,
     moves: Vec<Vec3>,
+    /// The longest displacement that is told [m].
+    longest: f64,
     weights: Vec<Vec3>,
     is_held: Vec<bool>,
 }
@@ -153,9 +155,11 @@ impl HeldPoints {
             values.clear();
             values.resize(row_count, Vec3::ZERO);
         }
+        self.longest = 0.0;
         holding.visit_told(memory, &mut |told| {
             let (row, held) = (told.row as usize, f64::from(u8::from(told.is_held)));
             self.moves[row] = told.displacement * held;
+            self.longest = self.longest.max(self.moves[row].length());
             self.weights[row] = Vec3::new(told.contact_area * held, told.area, held);
         });
     }
@@ -173,9 +177,12 @@ impl HeldPoints {
             Felt::Area => 0.0,
             Felt::Sum => 1.0,
         };
+        // weights of followers that extrapolate cancel, displacements need not: no mean is longer than the longest
+        let mean = self.moves[at] / weight;
+        let shortened = (self.longest / mean.length()).min(1.0);
         self.points.push(HeldPoint {
             row,
-            displacement: self.moves[at] / weight,
+            displacement: if shortened < 1.0 { mean * shortened } else { mean },
             share,
             place: rows.positions[at],
             velocity: Vec3::ZERO,

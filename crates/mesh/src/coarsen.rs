@@ -8,9 +8,9 @@ use std::borrow::Cow;
 use souple_math::Vec3;
 use souple_table::{Value, Values};
 
-use crate::decimate::{Plan, decimated, farthest};
+use crate::decimate::{Plan, decimated, farthest, fit};
 use crate::fill::{Options, PARAMETERS, carry_groups, fill_mesh};
-use crate::repair::RepairLimits;
+use crate::repair::{RepairLimits, crossings};
 use crate::{ElementKind, Mesh, MeshError};
 
 /// Other sizes that are tried, relative to the one asked for.
@@ -90,6 +90,8 @@ const WORST: [f64; 3] = [0.3, 0.2, 0.12];
 const MORE: [f64; 2] = [1.0, 1.18];
 /// Of the fourth power of an edge what it costs, tried one after the other: which edges go first decides what can be reached.
 const LENGTH_SHARES: [f64; 3] = [0.01, 0.001, 0.1];
+/// Triangles of a surface that collapsed meshes are fitted to itself; of more, the surface of the mesh whose edges collapse.
+const MOST_FITTED: usize = 20_000;
 /// Tetrahedra of the mesh whose edges collapse, at least as many and at most a multiple of those wanted.
 const START: [usize; 2] = [4_000, 16];
 
@@ -111,7 +113,10 @@ pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError
         return filled;
     }
     let mut best = None;
-    let start = collapsible(mesh, wanted)?;
+    let Ok(start) = collapsible(mesh, wanted) else { return filled };
+    // a scan has more triangles than are worth fitting to
+    let goal =
+        if outside.triangles.len() <= MOST_FITTED { outside.clone() } else { start.boundary_surface() };
     let plans = WORST.into_iter().flat_map(|worst| {
         MORE.into_iter().flat_map(move |more| {
             let wanted = (more * wanted as f64) as usize;
@@ -119,10 +124,14 @@ pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError
         })
     });
     for plan in plans {
-        let collapsed = decimated(&start, &outside, plan);
-        let is_fit = (collapsed.cell_count() as f64 / wanted as f64 - 1.0).abs() <= OFF_COUNT;
+        let mut collapsed = decimated(&start, plan);
+        if (collapsed.cell_count() as f64 / wanted as f64 - 1.0).abs() > OFF_COUNT {
+            continue;
+        }
+        fit(&mut collapsed, &goal, plan.worst);
         let distance = apart(&collapsed);
-        if is_fit && distance < nearest {
+        // lobes that come through each other are no body
+        if distance < nearest && crossings(&collapsed.boundary_surface(), 1).pairs.is_empty() {
             (nearest, best) = (distance, Some(collapsed));
         }
         if nearest <= bound {

@@ -30,13 +30,11 @@ pub struct Plan {
     pub length_share: f64,
 }
 
-/// A mesh of fewer tetrahedra whose surface is fitted to `goal`. Of a mesh of `tet4`; groups are not carried.
-pub fn decimated(mesh: &Mesh, goal: &TriangleSurface, plan: Plan) -> Mesh {
+/// A mesh of fewer tetrahedra, of a mesh of `tet4`; groups are not carried.
+pub fn decimated(mesh: &Mesh, plan: Plan) -> Mesh {
     let mut state = Decimation::new(mesh, plan);
-    state.run(plan.wanted);
-    let mut coarse = state.finish();
-    fit(&mut coarse, goal, plan.worst);
-    coarse
+    state.run();
+    state.finish()
 }
 
 /// The farthest that points and centres of triangles of one surface are from another [m].
@@ -161,13 +159,13 @@ impl Decimation {
         state
     }
 
-    fn run(&mut self, wanted: usize) {
+    fn run(&mut self) {
         let mut queue = BinaryHeap::new();
         for point in 0..self.points.len() as u32 {
             let later = self.neighbours(point).into_iter().filter(|other| *other > point);
             queue.extend(later.map(|other| Reverse(self.candidate(point, other))));
         }
-        while self.left > wanted
+        while self.left > self.plan.wanted
             && let Some(Reverse(candidate)) = queue.pop()
         {
             let [a, b] = candidate.ends;
@@ -321,7 +319,7 @@ impl Decimation {
 }
 
 /// Brings the surface of a mesh nearer to another where that leaves no tetrahedron worse than allowed.
-fn fit(mesh: &mut Mesh, goal: &TriangleSurface, worst: f64) {
+pub fn fit(mesh: &mut Mesh, goal: &TriangleSurface, worst: f64) {
     let tets: Vec<[u32; 4]> =
         mesh.cells().map(|cell| [cell.nodes[0], cell.nodes[1], cell.nodes[2], cell.nodes[3]]).collect();
     let mut around = vec![Vec::new(); mesh.points.len()];
@@ -393,7 +391,8 @@ mod tests {
             let size = Values::new().with("size", Value::Number(size)).completed(PARAMETERS).unwrap();
             let fine = Options::from_values(&size).unwrap().fill_body(&body).unwrap().mesh;
             let plan = Plan { wanted, worst: 0.12, length_share: 0.01 };
-            let coarse = decimated(&fine, &fine.boundary_surface(), plan);
+            let mut coarse = decimated(&fine, plan);
+            fit(&mut coarse, &fine.boundary_surface(), plan.worst);
             let count = coarse.cell_count();
             assert!((count as f64 / wanted as f64 - 1.0).abs() < 0.2, "{shape}: {count}");
             assert!(radius_ratios(&coarse).into_iter().all(|ratio| ratio > 0.1), "{shape}");

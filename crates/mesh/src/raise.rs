@@ -10,7 +10,8 @@ impl Mesh {
     /// The mesh of cells with the same corners and nodes in the middles of edges, and of faces and cells up to `most`, where there is
     /// such an element ([`ElementKind::with_middles`]). Points are shared by all cells and facets around them, and follow those there
     /// were: middles of edges in the order of their ends, then of faces, then of cells. A point joins the groups that hold all corners of
-    /// the part it is the middle of. Cells that are not linear keep their nodes.
+    /// the part it is the middle of. Cells that are not linear keep their nodes. Beyond edges, cells that share a face fit where all of them
+    /// have elements with a node in it, as in meshes of one kind.
     ///
     /// Edges are straight; `place` gives a middle from its edge's ends, for those who know the curve. Middles of faces and cells lie where
     /// the curves around them put them: where the element with nodes on edges alone has its middle.

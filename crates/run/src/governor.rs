@@ -2,7 +2,7 @@
 //!
 //! What the clock decides is an edit, so that a recording replays without a clock.
 
-use souple_engine::Edit;
+use souple_engine::{Edit, Model};
 
 use crate::Session;
 
@@ -30,10 +30,10 @@ pub struct Governor {
 }
 
 impl Governor {
-    /// Of a world with the budgets that it has now.
-    pub fn new(session: &Session) -> Self {
+    /// Of a model with the budgets that its scene says.
+    pub fn new(model: &Model) -> Self {
         let mut budgets = Vec::new();
-        for (system, of) in session.world.model().systems.iter().enumerate() {
+        for (system, of) in model.systems.iter().enumerate() {
             for force in &of.forces {
                 let budget = force.editable().into_iter().find(|editable| editable.name == "budget");
                 budgets.extend(budget.map(|budget| Budget {
@@ -45,6 +45,15 @@ impl Governor {
             }
         }
         Self { budgets }
+    }
+
+    /// The same, where the world's budgets are others already.
+    #[must_use]
+    pub fn at(mut self, model: &Model) -> Self {
+        for (budget, now) in self.budgets.iter_mut().zip(Self::new(model).budgets) {
+            budget.now = now.now;
+        }
+        self
     }
 
     /// Sets budgets after a period that took `load` of the time that there is for one; how many that were.

@@ -105,7 +105,7 @@ pub fn run_in_time(
         WorldToll { loads: Vec::with_capacity(steps.min(1 << 24) as usize), ..WorldToll::default() };
     let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-    let mut governor = Governor::new(session);
+    let mut governor = Governor::new(session.world.model());
     let mut held = vec![true; session.hands.len()];
     let (began, stages) = (Instant::now(), session.world.stages());
     let (mut dates, mut begun) = (Dates { period, ..Dates::default() }, began);
@@ -156,6 +156,12 @@ fn stations(session: &Session, period: f64) -> Result<Vec<Station>, TimeError> {
         return Err(TimeError::NoHand);
     }
     let station = |hand: &souple_scene::HandInfo| {
+        let forces = &session.world.model().systems[hand.system].forces;
+        if forces.iter().any(|force| force.name() == hand.force && force.holding().is_some()) {
+            let why = "its tool holds points (`response = \"imposed\"`), whose force the loop of devices does not know; `souple run` and \
+                       `souple view` do, or take `response = \"penalty\"`";
+            return Err(TimeError::Device { hand: hand.name.clone(), why: why.to_owned() });
+        }
         let device = hand.device.open();
         let device = device.map_err(|why| TimeError::Device { hand: hand.name.clone(), why })?;
         let smoothing = Smoothing::new(hand.between, period);

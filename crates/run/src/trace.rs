@@ -75,8 +75,8 @@ impl Trace {
     }
 
     pub fn summary(&self) -> Summary {
-        // of a run that ends before that date, the last one
-        let early = self.times.iter().take_while(|time| **time < self.since).count();
+        // dates are products of counts and periods, right to a rounding; of a run that ends before that date, the last one
+        let early = self.times.iter().take_while(|time| **time < self.since * (1.0 - 1e-12)).count();
         let first = early.min(self.times.len().saturating_sub(1));
         let counted = &self.values[first * self.components..];
         // a value that is not a number is not passed over

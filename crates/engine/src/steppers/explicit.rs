@@ -1,6 +1,8 @@
 //! Methods that evaluate the force once a step, somewhere along a drift: two Euler methods, that of Newton and Cotes, and
 //! the frame they share with Störmer–Verlet.
 
+use std::time::Instant;
+
 use souple_math::Vec3;
 use souple_solve::reduce::{self, KickAndDrift};
 
@@ -158,6 +160,7 @@ fn step_points(
 /// A force is not finite.
 fn sum_held_forces(step: &Step, next: &mut SystemState, ws: &mut SystemWorkspace) -> Result<(), StepError> {
     let Step { system, around, timestep, .. } = *step;
+    let clock = Instant::now();
     ws.held.gather(system, next, &ws.scratches, &ws.rows);
     ws.row_force.fill(Vec3::ZERO);
     for within in [true, false] {
@@ -173,6 +176,7 @@ fn sum_held_forces(step: &Step, next: &mut SystemState, ws: &mut SystemWorkspace
             ws.held.note_forces(system, next, &ws.scratches);
         }
     }
+    ws.stages.forces += clock.elapsed().as_secs_f64();
     if reduce::all_finite(&ws.row_force) {
         return Ok(());
     }

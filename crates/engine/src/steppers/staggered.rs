@@ -1,6 +1,7 @@
 //! Steps of their own for every point: bodies of several meshes, of which a few points are pushed often, most seldom.
 
 use std::ops::Range;
+use std::time::Instant;
 
 use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
@@ -248,6 +249,7 @@ impl Stage<'_, '_> {
     /// Takes hold of points, with the forces of all rates that act on them as the step begins.
     fn take_hold(&mut self) {
         let Step { system, .. } = *self.step;
+        let clock = Instant::now();
         let ws = &mut *self.ws;
         self.held.gather(system, self.next, &ws.scratches, &ws.rows);
         self.held.begin_rates(self.division.halvings as usize + 1);
@@ -267,6 +269,7 @@ impl Stage<'_, '_> {
                 ws.row_force[levels.rows()].fill(Vec3::ZERO);
             }
         }
+        ws.stages.forces += clock.elapsed().as_secs_f64();
     }
 
     /// Moves what is active for a tick that ends at `end`; what is led is where it is led to.

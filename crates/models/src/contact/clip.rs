@@ -1,8 +1,8 @@
 //! What of a triangle is inside a rounded part of a tool.
 //!
-//! The triangle is divided evenly, and each piece is clipped where the distance, taken to be linear between the piece's
-//! corners, is zero. As the part is convex, what is found lies inside of it, and lacks at most a strip as wide as the sagitta
-//! `h²/8r` of a piece of side `h`, whose part of the whole falls with the square of the division.
+//! The triangle is divided in three at the place that is deepest inside, and these finely and evenly; each piece is clipped where the distance,
+//! taken to be linear between the piece's corners, is zero. As the part is convex, what is found lies inside of it, and lacks strips as wide as the
+//! sagitta `h²/8r` of a piece of side `h`. What is smaller than a piece is found too, as a polygon around its deepest place.
 
 use souple_math::Vec3;
 
@@ -35,20 +35,26 @@ struct Spot {
     distance: f64,
 }
 
-/// `None` where nothing of the triangle is inside, or as good as nothing.
-pub fn inside(part: &Capsule, [a, b, c]: [Vec3; 3]) -> Option<Inside> {
-    let spot = |i: usize, j: usize| {
-        let (u, v) = (i as f64 / PIECES as f64, j as f64 / PIECES as f64);
-        let place = a + (b - a) * u + (c - a) * v;
-        Spot { u, v, distance: part.distance(place) }
-    };
+/// `None` where nothing of the triangle is inside, or as good as nothing. `deepest` are the weights of the corners where it is nearest to
+/// the middle of the part.
+pub fn inside(part: &Capsule, [a, b, c]: [Vec3; 3], deepest: [f64; 3]) -> Option<Inside> {
     let doubled = (b - a).cross(c - a).length();
     let mut sums = [0.0; 3];
-    for i in 0..PIECES {
-        for j in 0..PIECES - i {
-            add_piece([spot(i, j), spot(i + 1, j), spot(i, j + 1)], &mut sums);
-            if i + j + 2 <= PIECES {
-                add_piece([spot(i + 1, j), spot(i + 1, j + 1), spot(i, j + 1)], &mut sums);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    for k in 0..3 {
+        let ([u0, v0], [u1, v1], [u2, v2]) = ([deepest[1], deepest[2]], corners[k], corners[(k + 1) % 3]);
+        let spot = |i: usize, j: usize| {
+            let (s, t) = (i as f64 / PIECES as f64, j as f64 / PIECES as f64);
+            let (u, v) = (u0 + (u1 - u0) * s + (u2 - u0) * t, v0 + (v1 - v0) * s + (v2 - v0) * t);
+            let place = a + (b - a) * u + (c - a) * v;
+            Spot { u, v, distance: part.distance(place) }
+        };
+        for i in 0..PIECES {
+            for j in 0..PIECES - i {
+                add_piece([spot(i, j), spot(i + 1, j), spot(i, j + 1)], &mut sums);
+                if i + j + 2 <= PIECES {
+                    add_piece([spot(i + 1, j), spot(i + 1, j + 1), spot(i, j + 1)], &mut sums);
+                }
             }
         }
     }
@@ -134,7 +140,8 @@ mod tests {
         let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(3.0, -1.0, 0.0), Vec3::new(-1.0, 3.0, 0.0)];
         let (r, height) = (0.8, 0.3);
         let radius = f64::sqrt(r * r - height * height);
-        let found = inside(&ball(Vec3::new(0.2, 0.1, height), r), corners).unwrap();
+        let middle = [0.425, 0.3, 0.275];
+        let found = inside(&ball(Vec3::new(0.2, 0.1, height), r), corners, middle).unwrap();
         let disc = PI * radius * radius;
         let h = f64::sqrt(2.0) * 4.0 / PIECES as f64;
         assert!(found.area <= disc && found.area > disc * (1.0 - (h / radius).powi(2) / 6.0), "{found:?}");
@@ -142,10 +149,24 @@ mod tests {
         let centroid = corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
         assert!((centroid - Vec3::new(0.2, 0.1, 0.0)).length() < 0.05 * h, "{centroid:?}");
         // the whole of a triangle that is inside altogether: a third for each corner
-        let all = inside(&ball(Vec3::ZERO, 10.0), corners).unwrap();
+        let all = inside(&ball(Vec3::ZERO, 10.0), corners, middle).unwrap();
         assert!((all.area - 8.0).abs() < 1e-12);
         assert!(all.weights().iter().all(|weight| (weight - 1.0 / 3.0).abs() < 1e-12));
-        assert_eq!(inside(&ball(Vec3::Z, 0.5), corners), None);
+        assert_eq!(inside(&ball(Vec3::Z, 0.5), corners, middle), None);
+    }
+
+    /// A ball of a millimetre that is a tenth of one deep in a triangle of thirty is found, though its disc is a fourth of a piece across: as the
+    /// polygon between the places where pieces' sides leave it, by distances taken to be linear.
+    #[test]
+    fn what_is_smaller_than_a_piece_is_found() {
+        let corners = [Vec3::ZERO, Vec3::new(30.0, 0.0, 0.0), Vec3::new(0.0, 30.0, 0.0)];
+        let deepest = [1.0 - 0.31 - 0.27, 0.31, 0.27];
+        let place = Vec3::new(0.31 * 30.0, 0.27 * 30.0, 0.0);
+        let found = inside(&ball(place + Vec3::Z * 0.9, 1.0), corners, deepest).unwrap();
+        let disc = PI * (1.0 - 0.81);
+        assert!(found.area > 0.0 && found.area <= disc, "{found:?}");
+        let [_, u, v] = found.weights();
+        assert!((corners[1] * u + corners[2] * v - place).length() < 0.2, "{found:?}");
     }
 
     /// The way out of a rod, across it and along it.

@@ -251,7 +251,7 @@ impl ImposedContact {
         if nearest.distance_sq >= part.radius * part.radius || (core - a).dot(normal) <= 0.0 {
             return None;
         }
-        let inside = inside(part, places)?;
+        let inside = inside(part, places, nearest.weights)?;
         let weights = inside.weights();
         let centroid = a * weights[0] + b * weights[1] + c * weights[2];
         let depth = part.way_out(centroid, -normal);

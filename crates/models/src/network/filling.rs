@@ -242,7 +242,7 @@ impl Filling {
     /// Where balls are put below a place of the surface; `None` where it is too thin for them, or too sharp.
     fn below(&self, shape: &dyn Shape, place: Vec3) -> Option<Vec3> {
         let BoundingBox { low, high } = self.bounds;
-        let mut ball = place;
+        let mut ball = place.max_components(low).min_components(high);
         for _ in 0..MOVES_IN {
             let nearest = shape.nearest(ball, f64::INFINITY)?;
             let missing = nearest.distance + self.inset;
@@ -289,6 +289,10 @@ impl Filling {
                 }
                 let moved = [1.0, 0.5, 0.25, 0.125].into_iter().find_map(|share| {
                     let to = self.below(shape, from + push * share)?;
+                    // shells are no thicker for it
+                    if !self.is_inside(shape, to, -ON_SHEET * self.spacing) {
+                        return None;
+                    }
                     let mut left = 0.0;
                     balls.visit_overlapping(ball, to, |_, apart| left += (self.spacing - apart).powi(2));
                     let gains = left < overlap * (1.0 - LEAST_GAIN);
@@ -406,7 +410,7 @@ impl Filling {
     /// The same within the bounds, as soon as it is as deep; `None` of what is not so in the end, or deeper than is asked for.
     fn landed(&self, shape: &dyn Shape, start: Vec3) -> Option<Vec3> {
         let BoundingBox { low, high } = self.bounds;
-        let mut place = start;
+        let mut place = start.max_components(low).min_components(high);
         for _ in 0..=MOVES {
             let nearest = shape.nearest(place, f64::INFINITY)?;
             let missing = nearest.distance + self.inset;

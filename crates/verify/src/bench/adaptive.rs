@@ -4,7 +4,7 @@
 //! The source's pair, Hooke's and St. Venant–Kirchhoff's laws, at equilibrium, and in explicit steps with the 27 samples of a
 //! hexahedron that the second takes and with the usual eight; and Hooke's law with Ogden's, which costs ten times as much.
 
-use super::timing::{Held, Timed, Timing, as_it_is, scene, with_threads};
+use super::timing::{Held, Timed, in_turn, scene};
 use super::{Effort, Figure, value_of};
 
 /// How many times faster than under the second law everywhere a body must be that is off by 5 % at most.
@@ -140,27 +140,11 @@ impl Adapting {
                 (variant, all.collect())
             })
             .collect();
-        // in turn, so that what else the machine does meets all of them alike
-        for _ in 0..effort.choose(1, 5) {
-            for (number, (variant, settings)) in variants.iter().enumerate() {
-                let timing = Timing {
-                    scene: self.scene,
-                    settings,
-                    prepare: as_it_is,
-                    warm_up: 0,
-                    samples: 1,
-                    steps_per_sample: self.periods as usize,
-                };
-                // each from the start: later, every element has the law that it keeps
-                let timed = with_threads(1, || timing.sample(1))??;
-                match measured.get_mut(number) {
-                    Some((_, _, so_far)) => {
-                        so_far.seconds.extend(timed.seconds);
-                        so_far.processor.extend(timed.processor);
-                    }
-                    None => measured.push((variant, read(settings)?, timed)),
-                }
-            }
+        let settings: Vec<Vec<String>> = variants.iter().map(|(_, settings)| settings.clone()).collect();
+        // each from the start: later, every element has the law that it keeps
+        let timed = in_turn(self.scene, &settings, self.periods as usize, effort.choose(1, 5))?;
+        for ((variant, settings), timed) in variants.iter().zip(timed) {
+            measured.push((variant, read(settings)?, timed));
         }
         let Some((_, reference, everywhere)) = measured.last() else { return Ok(Vec::new()) };
         let mut figures = Vec::new();

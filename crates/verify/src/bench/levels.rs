@@ -4,7 +4,7 @@
 use souple_engine::World;
 use souple_scene::Measurement;
 
-use super::timing::{self, Clock, Timed, Timing, as_it_is, scene, with_threads};
+use super::timing::{self, Clock, in_turn, scene, with_threads};
 use super::{Effort, Figure, value_of};
 use crate::cases::STRUCK_ROD;
 
@@ -137,28 +137,7 @@ pub fn octree_rod(effort: Effort) -> Result<Vec<Figure>, String> {
         let level = level.map(|level| format!("bodies.rod.octree.{level}"));
         STRUCK_ROD.iter().map(|text| (*text).to_owned()).chain(level).collect::<Vec<String>>()
     });
-    let mut timed: Vec<Timed> = Vec::new();
-    // in turn, so that what else the machine does meets all of them alike
-    for _ in 0..effort.choose(1, 3) {
-        for (number, settings) in settings.iter().enumerate() {
-            let timing = Timing {
-                scene: "octree_rod",
-                settings,
-                prepare: as_it_is,
-                warm_up: 0,
-                samples: 1,
-                steps_per_sample: periods,
-            };
-            let again = with_threads(1, || timing.sample(1))??;
-            match timed.get_mut(number) {
-                Some(so_far) => {
-                    so_far.seconds.extend(again.seconds);
-                    so_far.processor.extend(again.processor);
-                }
-                None => timed.push(again),
-            }
-        }
-    }
+    let timed = in_turn("octree_rod", &settings, periods, effort.choose(1, 3))?;
     let tip = |settings: &[String]| value_of(scene("octree_rod", settings)?, periods as u64, "tip", 2);
     let error = tip(&settings[2])? / tip(&settings[0])? - 1.0;
     let [finest, coarse, adaptive] = timed.as_slice() else { return Ok(Vec::new()) };

@@ -202,6 +202,38 @@ impl Timed {
     }
 }
 
+/// What a scene takes under each of several settings, from its beginning, on one thread; in turn, so that what else the machine does
+/// meets all of them alike.
+pub fn in_turn(
+    scene: &str,
+    variants: &[Vec<String>],
+    periods: usize,
+    rounds: usize,
+) -> Result<Vec<Timed>, String> {
+    let mut timed: Vec<Timed> = Vec::new();
+    for _ in 0..rounds {
+        for (number, settings) in variants.iter().enumerate() {
+            let timing = Timing {
+                scene,
+                settings,
+                prepare: as_it_is,
+                warm_up: 0,
+                samples: 1,
+                steps_per_sample: periods,
+            };
+            let again = with_threads(1, || timing.sample(1))??;
+            match timed.get_mut(number) {
+                Some(so_far) => {
+                    so_far.seconds.extend(again.seconds);
+                    so_far.processor.extend(again.processor);
+                }
+                None => timed.push(again),
+            }
+        }
+    }
+    Ok(timed)
+}
+
 pub fn scene(name: &str, settings: &[String]) -> Result<Scene, String> {
     let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
     souple_scene::read_text(name, text, Path::new("."), settings)

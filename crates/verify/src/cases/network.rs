@@ -60,7 +60,7 @@ const CLUSTER: Case = Case {
     ..LIMIT
 };
 
-/// Links of several laws, some of which yield and tear, and balls that push; all thrown with a spin.
+/// Links that may yield and tear, and balls that push; all thrown with a spin.
 const THROWN: [&str; 3] = [
     "networks.lattice.angular_velocity=[0, 0, 2]",
     r#"networks.lattice.links[0].law={ name = "elasto_plastic", stiffness = 100, hardening = 25, traction = 0.05, rupture = 0.12 }"#,
@@ -570,7 +570,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "thrown_momentum",
         capabilities: &["JIM-94", "JIM-5"],
-        what: "momentum of a lattice that is thrown with a spin, whose links yield and tear and whose masses push each other, after a second",
+        what: "momentum of a lattice that is thrown with a spin, whose links may yield and tear and whose masses push each other, after a second",
         scene: "network_lattice",
         settings: &THROWN,
         reading: Reading::component("momentum", 0),
@@ -637,7 +637,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "sliding_has_stopped",
         capabilities: &["JIM-45", "JIM-46"],
-        what: "speed of the same 25 ms after v/(μ g): less than V_s, where the hook has it",
+        what: "speed of the same 20 ms after v/(μ g): less than V_s, where the hook has it",
         scene: "network_friction",
         reading: Reading::component("speed", 0).after(53),
         reference: 0.0,

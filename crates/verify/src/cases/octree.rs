@@ -363,7 +363,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "octree_rods_alike",
         capabilities: &["DEB-16"],
-        what: "how far the ends of two rods are from each other while they fall and come to rest, one pushed at rates of its own, one in every tick, the most",
+        what: "how far the ends of two rods are from each other within 0.12 s of their fall, one pushed at rates of its own, one in every tick, the most",
         scene: "octree_rods",
         reading: Reading::last("apart").taking(Statistic::Max).after(60),
         reference: 0.0,

@@ -99,7 +99,7 @@ const IMPOSED: &str = r#"hands.right.touch={ detect = "triangles", response = "i
 const HELD: Case = Case {
     id: "hand_jump_held",
     capabilities: &["DEB-46", "DEB-47"],
-    what: "greatest change of the force on a ball from one step to the next, over the force, while it presses a slab at 3 mm/s and holds the points that it touches",
+    what: "greatest change of the force on a ball from one step to the next, over the force, while it presses a slab at 3 mm/s and holds the points that it touches, from a depth at which several triangles are in touch",
     scene: "held_press",
     settings: &[],
     reading: Reading::last("jump").taking(Statistic::Max).after(330),

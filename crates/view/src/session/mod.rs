@@ -204,7 +204,9 @@ impl Live {
         if self.hub.page_count() > 0 {
             let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
             self.hub.show(&self.stage.frame(factor).into());
-            self.worked += now.elapsed();
+            if self.mode == Mode::Playing {
+                self.worked += now.elapsed();
+            }
         }
     }
 
@@ -218,6 +220,7 @@ impl Live {
 
     fn set_mode(&mut self, mode: Mode) {
         if mode == Mode::Playing {
+            self.worked = Duration::ZERO;
             self.pace.start(Instant::now(), self.stage.time());
         }
         self.mode = mode;

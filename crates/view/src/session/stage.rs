@@ -137,7 +137,7 @@ impl Stage {
             iterations_per_step: [0.0; 2],
             sample_every: (SAMPLE_DISTANCE / period).ceil().max(1.0) as u64,
             row: Vec::with_capacity(columns),
-            governor: Governor::new(&session),
+            governor: Governor::new(session.world.model()),
             session,
         };
         hub.samples().begin(number, columns);
@@ -349,8 +349,10 @@ impl Stage {
         let (before, last) = self.before;
         let steps = period.saturating_sub(last);
         if steps > 0 {
-            let parts =
-                |times: StageTimes| [times.pairs, times.forces, times.assembly, times.solve, times.advance];
+            let parts = |times: StageTimes| {
+                let rest = times.advance + times.fields;
+                [times.pairs, times.forces, times.assembly, times.solve, rest]
+            };
             let (now, before) = (parts(now), parts(before));
             // a changed scene counts from zero again
             let part = |i: usize| 1e3 * (now[i] - before[i]).max(0.0) / steps as f64;
@@ -501,9 +503,11 @@ impl Stage {
     pub fn change(&mut self, scene: Scene, setting: &str, hub: &Hub) -> Result<(), String> {
         let told = self.session.warnings.len();
         let influence = self.influence_shown();
+        // of the scene, before what the clock has set since is done again
+        let governor = Governor::new(&scene.model);
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
         self.show_influence_of(&influence);
-        self.governor = Governor::new(&self.session);
+        self.governor = governor.at(self.session.world.model());
         for warning in &self.session.warnings[told..] {
             hub.tell_all(&document("warning", json!({"message": self.origin.told(warning)})));
         }

@@ -96,7 +96,7 @@ impl Element<'_> {
             let field: Vec3 = shape.iter().zip(&forces).map(|(N, f)| *f * *N).sum();
             sum += volume * field.length();
         }
-        // an element that is inverted is over any threshold, as one without volume is
+        // an element that is inverted is over any threshold, as one without volume is; areas have no sign
         sum / self.volume(self.now).max(0.0)
     }
 

@@ -154,6 +154,10 @@ impl Force for MassSpring {
         Declaration::ELASTIC
     }
 
+    fn acts_within(&self) -> bool {
+        true
+    }
+
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
         let of = |spring: &Spring| {
             let stretch = spring.now(at.positions).0 - spring.rest_length;
