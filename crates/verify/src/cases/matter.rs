@@ -957,9 +957,7 @@ pub(super) const CASES: &[Case] = &[
         mutation: "networks.belt.links[0].law.stiffness=200",
         ..OSCILLATOR
     },
-    mould_is_full!("bunny_is_full", "bunny", 0.008, "networks.bunny.masses.balls.fixed=true"),
-    mould_is_full!("organ_is_full", "liver", 0.008, "networks.liver.masses.balls.fixed=true"),
-    mould_is_full!("ring_is_full", "ring", 0.008, "networks.ring.masses.balls.fixed=true"),
+    mould_is_full!("pill_is_full", "pill", 0.008, "networks.pill.masses.balls.fixed=true"),
     mould_is_full!("sphere_is_full", "sphere", 0.01, "networks.sphere.masses.balls.fixed=true"),
     mould_is_full!("block_is_full", "block", 0.009, "networks.block.masses.balls.fixed=true"),
     Case {
