@@ -48,8 +48,9 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
     rows(tree, &["verify", "--mutations", "--json"], |rows| rows.iter().filter_map(blindness).collect())
 }
 
-/// Benches whose baselines are promises: about laws and elements, what is shown 25 times a second, and which of two ways is the cheaper.
-const SPEED: [&str; 15] = [
+/// Benches whose baselines are promises: about laws and elements, networks, levels and tools, what is shown 25 times a second, and which of two ways
+/// is the cheaper.
+const SPEED: [&str; 21] = [
     "law_text_tensor",
     "law_text_table",
     "law_text_scalar",
@@ -65,6 +66,12 @@ const SPEED: [&str; 15] = [
     "adaptive",
     "contours_500",
     "view_network",
+    "springs_lattice_100k",
+    "springs_lattice_1m",
+    "string_audio",
+    "adaptive_saving",
+    "octree_rod",
+    "tool_detection_10k",
 ];
 
 /// Every figure of these benches is as good as its baseline.

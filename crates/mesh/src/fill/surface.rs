@@ -160,11 +160,26 @@ pub fn fill_mesh(mesh: &Mesh, limits: RepairLimits, options: &Options) -> Result
     Ok(filled)
 }
 
-/// Carries the groups of a mesh of volumes to another of the same body, which has none.
+/// Carries the groups of a mesh of volumes to another of the same body, which has none. A group too small for any cell or face of it
+/// is of the points there that are nearest to its own.
 pub(crate) fn carry_groups(source: &Mesh, target: &mut Mesh) {
     let surface = source.boundary_surface();
     let outward: Vec<Vec3> = (0..surface.triangles.len() as u32).map(|t| surface.area_vector(t)).collect();
     let points = target.boundary_surface().mesh_points;
     target.groups.insert(groups::SURFACE.to_owned(), Group { points, ..Group::default() });
     groups::carry(source, &surface, &outward, target);
+    for (name, group) in &source.groups {
+        if target.groups.contains_key(name) {
+            continue;
+        }
+        let nearest = |point: &u32| {
+            let distance =
+                |other: &u32| (target.points[*other as usize] - source.points[*point as usize]).length_sq();
+            (0..target.points.len() as u32).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        };
+        let mut points: Vec<u32> = group.points.iter().filter_map(nearest).collect();
+        points.sort_unstable();
+        points.dedup();
+        target.groups.insert(name.clone(), Group { points, ..Group::default() });
+    }
 }
