@@ -240,9 +240,11 @@ fn surface_elements_switch_by_every_criterion() {
             let of_unit = excesses(1.0);
             let mut sorted = of_unit.clone();
             sorted.sort_by(f64::total_cmp);
-            assert!(sorted[0] > 0.0 && sorted[count - 1].is_finite(), "{name}");
-            // between two neighbours in the middle
-            let threshold = 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
+            // a triangle that gets rounder has none by its shape
+            let upper = 3 * count / 4;
+            assert!(sorted[0] >= 0.0 && sorted[upper - 1] > 0.0 && sorted[count - 1].is_finite(), "{name}");
+            // between two neighbours
+            let threshold = 0.5 * (sorted[upper - 1] + sorted[upper]);
             let force = adaptive_section(&mesh, section, &[(criterion, threshold)], 0.0);
             let mut memory = vec![0.0; force.memory_len()];
             let mut scratch = force.new_scratch();
