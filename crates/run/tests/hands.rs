@@ -112,7 +112,7 @@ const PRESS: &str = include_str!("../../../scenes/held_press/scene.toml");
 
 /// A coarse slab that is pressed after a tenth of a second.
 const SOON: [&str; 2] =
-    ["bodies.slab.mesh.cells=[8, 8, 3]", "hands.right.motion.times=[0, 0.02, 0.2, 1, 1.1]"];
+    ["bodies.slab.mesh.cells=[8, 8, 3]", "hands.right.motion.times=[0, 0.02, 0.1, 0.5, 1, 1.1]"];
 
 /// The same slab of two meshes, refined where it is pressed.
 const OF_LEVELS: [&str; 4] = [
@@ -138,14 +138,14 @@ fn points_are_held_on_from_snapshots() {
             assert!(outcome.report.failure.is_none(), "{:?}", outcome.report.failure);
             outcome
         };
-        let whole = run_on(&Options { steps: Some(36), ..Options::default() });
-        let half = run_on(&Options { steps: Some(18), ..Options::default() });
+        let whole = run_on(&Options { steps: Some(60), ..Options::default() });
+        let half = run_on(&Options { steps: Some(30), ..Options::default() });
         let pressed = half.traces.iter().find(|trace| trace.name == "on_slab").and_then(|trace| trace.last());
         assert!(pressed.is_some_and(|force| force[2] < -1e-3), "{pressed:?}");
         let (binary, isa) = (souple_run::binary(), souple_run::instruction_set());
         let state = half.world.state().clone();
         let resume = Snapshot { state, commands: Vec::new(), seed: 0, binary, isa: isa.to_owned() };
-        let rest = run_on(&Options { steps: Some(18), resume: Some(resume), ..Options::default() });
+        let rest = run_on(&Options { steps: Some(30), resume: Some(resume), ..Options::default() });
         assert_eq!(whole.report.hashes.last(), rest.report.hashes.last());
     }
 }
