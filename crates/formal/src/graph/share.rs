@@ -215,34 +215,39 @@ fn take_out(lists: &mut [List]) -> Vec<Pair> {
     lists.iter().flat_map(|list| &list.parts).for_each(|(_, part)| *users.entry(*part).or_default() += 1);
     // what one list has alone is in no pair that several have; pairs are as many as the square of the others
     let is_shared = |(_, part): &(bool, Part)| users.get(part).is_none_or(|count| *count > 1);
-    for (index, list) in lists.iter().enumerate() {
-        let shared: Vec<_> = list.parts.iter().filter(|part| is_shared(part)).collect();
+    let mut shared: Vec<Vec<(bool, Part)>> =
+        lists.iter().map(|list| list.parts.iter().copied().filter(is_shared).collect()).collect();
+    for (index, shared) in shared.iter().enumerate() {
         for (position, a) in shared.iter().enumerate() {
-            shared[..position].iter().for_each(|b| counts.change(pair_of(**a, **b), index, true));
+            shared[..position].iter().for_each(|b| counts.change(pair_of(*a, *b), index, true));
         }
     }
     let mut pairs = Vec::new();
     while let Some((pair, users)) = counts.most_frequent() {
         let new = Part::Pair(pairs.len());
         pairs.push(pair);
+        let is_taken = |(_, part): &(bool, Part)| *part == pair.0 || *part == pair.1;
         for user in users {
-            let parts = &mut lists[user].parts;
-            let is_taken = |part: &Part| *part == pair.0 || *part == pair.1;
-            for (position, a) in parts.iter().enumerate().filter(|(_, a)| is_shared(a)) {
-                for b in parts[..position].iter().filter(|b| is_shared(b)) {
-                    if is_taken(&a.1) || is_taken(&b.1) {
-                        counts.change(pair_of(*a, *b), user, false);
-                    }
+            let (parts, shared) = (&mut lists[user].parts, &mut shared[user]);
+            let taken: Vec<usize> = (0..shared.len()).filter(|place| is_taken(&shared[*place])).collect();
+            for &place in &taken {
+                let others = (0..shared.len()).filter(|other| *other != place);
+                // a pair of two that are taken is one pair
+                for other in others.filter(|other| *other < place || !taken.contains(other)) {
+                    let (later, earlier) = (shared[place.max(other)], shared[place.min(other)]);
+                    counts.change(pair_of(later, earlier), user, false);
                 }
             }
-            let first = parts.iter().position(|(_, part)| *part == pair.0);
+            let first = shared.iter().find(|(_, part)| *part == pair.0);
             // pairs are of parts that are there
-            let sign = first.is_some_and(|first| parts[first].0);
-            parts.retain(|(_, part)| *part != pair.0 && *part != pair.1);
-            for other in parts.iter().filter(|part| is_shared(part)) {
+            let sign = first.is_some_and(|(sign, _)| *sign);
+            parts.retain(|part| !is_taken(part));
+            shared.retain(|part| !is_taken(part));
+            for other in shared.iter() {
                 counts.change(pair_of(*other, (sign, new)), user, true);
             }
             parts.push((sign, new));
+            shared.push((sign, new));
         }
     }
     pairs
