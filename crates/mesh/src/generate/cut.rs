@@ -154,7 +154,7 @@ pub(super) enum Parity {
 
 impl Parity {
     pub(super) fn of(mirrors: usize) -> Self {
-        if mirrors % 2 == 0 { Self::Even } else { Self::Odd }
+        if mirrors.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }
 }
 
