@@ -322,7 +322,12 @@ impl ProbeInfo {
 /// The one shape that masses of a probe fill.
 fn mould(probe: &Probe, draft: &Draft) -> Option<Mould> {
     let body = draft.body(probe.body.as_deref()?)?;
-    let network = body.spec.network.as_ref()?;
+    let expected = "`region` with masses of one group that has `fill`";
+    let Some(network) = &body.spec.network else {
+        let message = format!("body `{}` is no network: no balls fill it", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, expected);
+        return None;
+    };
     let points: Option<Vec<u32>> = probe.region.as_ref().map(|region| draft.selector(body).points(region));
     let is_asked = |group: &&MassGroup| {
         let Some(numbers) = network.numbers_of(&group.name) else { return false };
@@ -343,12 +348,7 @@ fn mould(probe: &Probe, draft: &Draft) -> Option<Mould> {
                 "{} of the masses asked about fill a shape",
                 souple_table::counted(filled.len() as u64, "group")
             );
-            draft.log.add(
-                Code::Conflict,
-                &probe.site,
-                message,
-                "`region` with masses of one group that has `fill`",
-            );
+            draft.log.add(Code::Conflict, &probe.site, message, expected);
             None
         }
     }

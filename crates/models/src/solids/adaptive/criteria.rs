@@ -132,7 +132,8 @@ mod tests {
     fn of(kind: ElementKind, F: &Mat3, criterion: Criterion) -> f64 {
         let rest = kind.regular();
         let now: Vec<Vec3> = rest.iter().map(|x| *F * *x).collect();
-        let element = Element { kind, rule: kind.default_rule(), thickness: 0.01, rest: &rest, now: &now };
+        let thickness = if kind.dimension() == 2 { 0.01 } else { 1.0 };
+        let element = Element { kind, rule: kind.default_rule(), thickness, rest: &rest, now: &now };
         // Hooke's law with μ = 1, λ = 0
         element.measure(criterion, |F| (*F + F.transpose()).plus_diagonal(-2.0))
     }
