@@ -274,21 +274,4 @@ pub(super) const CASES: &[Case] = &[
         settings: &[r#"systems.main.stepper="t_simulation""#],
         ..PLACE
     },
-    Case {
-        id: "newton_cotes_runs_away",
-        capabilities: &["DEB-34"],
-        what: "how far the corner of a cube at a wall swings within half a second under Newton and Cotes, in steps in which modified Euler lets it swing by 2 cm: by more than the cube is long",
-        scene: "swinging_cube",
-        settings: &[
-            NEWTON_COTES,
-            r#"bodies.cube.formulation={ name = "edge_tensors" }"#,
-            "bodies.cube.material.youngs_modulus=19185.185185185186",
-        ],
-        reading: Reading::component("corner", 2).taking(Statistic::Span).after(50),
-        reference: 0.1,
-        tolerance: Tolerance::Above,
-        source: "V-34: diverges at the step used for modified Euler",
-        mutation: r#"systems.main.stepper="symplectic_euler""#,
-        ..BLOCK
-    },
 ];
