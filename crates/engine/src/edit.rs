@@ -74,11 +74,13 @@ pub enum EditError {
 
 impl Edit {
     /// Whether forces, their tangents or constraints are others afterwards, and not only where things are or go.
-    pub fn changes_forces(&self) -> bool {
+    pub fn changes_forces(&self, model: &Model) -> bool {
         match self {
             Self::MoveHand { .. } | Self::Lead { .. } | Self::SetVelocity { .. } | Self::Push { .. } => false,
-            // what a body may look at changes nothing about how it pushes
-            Self::SetParameter { parameter, .. } => parameter != "budget",
+            Self::SetParameter { system, force, parameter, .. } => {
+                let mut forces = model.systems.get(*system).into_iter().flat_map(|system| &system.forces);
+                !forces.any(|one| one.name() == force && one.is_effort(parameter))
+            }
             _ => true,
         }
     }

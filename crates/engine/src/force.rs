@@ -375,6 +375,11 @@ pub trait Force: Send + Sync {
         None
     }
 
+    /// Whether a parameter says how much work it may do, and changes nothing about how it pushes.
+    fn is_effort(&self, _parameter: &str) -> bool {
+        false
+    }
+
     /// Whether it acts within one body: its elasticity, its damping, and nothing from outside.
     fn acts_within(&self) -> bool {
         false

@@ -285,7 +285,7 @@ impl World {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
         self.fit_workspace();
-        if edit.changes_forces() {
+        if edit.changes_forces(&self.model) {
             self.forget_couplings();
         }
         let period = self.state.period;

@@ -19,6 +19,7 @@ const LEAST: f64 = 0.01;
 struct Budget {
     system: usize,
     force: String,
+    parameter: &'static str,
     /// As the scene says.
     most: f64,
     now: f64,
@@ -35,10 +36,11 @@ impl Governor {
         let mut budgets = Vec::new();
         for (system, of) in model.systems.iter().enumerate() {
             for force in &of.forces {
-                let budget = force.editable().into_iter().find(|editable| editable.name == "budget");
-                budgets.extend(budget.map(|budget| Budget {
+                let efforts = force.editable().into_iter().filter(|editable| force.is_effort(editable.name));
+                budgets.extend(efforts.map(|budget| Budget {
                     system,
                     force: force.name().to_owned(),
+                    parameter: budget.name,
                     most: budget.value,
                     now: budget.value,
                 }));
@@ -65,7 +67,7 @@ impl Governor {
                 continue;
             }
             let (system, force) = (budget.system, budget.force.clone());
-            let edit = Edit::SetParameter { system, force, parameter: "budget".to_owned(), value };
+            let edit = Edit::SetParameter { system, force, parameter: budget.parameter.to_owned(), value };
             if session.edit(edit).is_ok() {
                 budget.now = value;
                 set += 1;

@@ -57,7 +57,7 @@ pub enum Statistic {
     /// The same from so many world periods on, of the course in `probes.csv`.
     LateSpan(u64),
     /// The last over that after so many world periods.
-    LastOver(usize),
+    LastOver(u64),
     /// The strongest frequency [Hz].
     Frequency,
 }
@@ -233,7 +233,7 @@ impl Statistic {
                 Some(greatest - late.iter().copied().reduce(f64::min)?)
             }
             Self::LastOver(period) => {
-                let then = trace.values.get(period * trace.components + component)?;
+                let then = trace.value(period as usize)?.get(component)?;
                 Some(of(&summary.last)? / then)
             }
             Self::Frequency => summary.frequency.get(component).copied().flatten(),

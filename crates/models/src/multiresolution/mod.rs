@@ -84,6 +84,8 @@ pub enum Choice {
 /// What a formula of levels may refer to.
 pub const PLACE_VARIABLES: [&str; 3] = ["x", "y", "z"];
 
+/// The parameter that says how many stresses a step may evaluate.
+const BUDGET: &str = "budget";
 /// A point on which less than this part of its matter hangs has nothing of its own to move.
 const LEAST_MASS: f64 = 0.05;
 
@@ -423,13 +425,17 @@ impl Force for LevelsForce {
 
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
 
+    fn is_effort(&self, parameter: &str) -> bool {
+        parameter == BUDGET
+    }
+
     fn editable(&self) -> Vec<Editable> {
         let mut all = Vec::new();
         if let Choice::Adaptive(Criterion { refine, coarsen, .. }) = self.choice {
             all.push(Editable { name: "refine", unit: "", value: refine });
             all.push(Editable { name: "coarsen", unit: "", value: coarsen });
         }
-        all.extend(self.budget.map(|value| Editable { name: "budget", unit: "", value }));
+        all.extend(self.budget.map(|value| Editable { name: BUDGET, unit: "", value }));
         all
     }
 
@@ -455,7 +461,7 @@ impl Force for LevelsForce {
                 }
                 *criterion = changed;
             }
-            ("budget", _, Some(budget)) => {
+            (BUDGET, _, Some(budget)) => {
                 if !(value.is_finite() && value > 0.0) {
                     return unfit(force, "a finite number above 0".to_owned());
                 }

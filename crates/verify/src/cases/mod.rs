@@ -4,6 +4,7 @@ mod adaptive;
 mod bar;
 mod cantilever_orders;
 mod cantilevers;
+mod characteristics;
 mod conditional;
 mod contact;
 mod derivations;
@@ -29,6 +30,7 @@ mod moving_frame;
 mod network;
 mod octree;
 mod patch;
+mod plastic_bodies;
 mod point_cells;
 mod pressure;
 mod resolution;
@@ -82,11 +84,13 @@ pub const TABLES: &[&[Case]] = &[
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    characteristics::CASES,
     rheology::CASES,
     conditional::CASES,
     heat::CASES,
     material_fields::CASES,
     matter::CASES,
+    plastic_bodies::CASES,
     material_tests::CASES,
     views::CASES,
     frames::CASES,
