@@ -50,7 +50,7 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
 
 /// Benches whose baselines are promises: about laws and elements, networks, levels and tools, what is shown 25 times a second, and which of two ways
 /// is the cheaper.
-const SPEED: [&str; 21] = [
+const SPEED: [&str; 19] = [
     "law_text_tensor",
     "law_text_table",
     "law_text_scalar",
@@ -66,8 +66,6 @@ const SPEED: [&str; 21] = [
     "adaptive",
     "contours_500",
     "view_network",
-    "springs_lattice_100k",
-    "springs_lattice_1m",
     "string_audio",
     "adaptive_saving",
     "octree_rod",
