@@ -1,5 +1,5 @@
-//! What no file may say: a path of somebody's machine, a registry others cannot reach; and the head that every
-//! source file has.
+//! What no file may say: a path of somebody's machine, a registry others cannot reach; the head that every source
+//! file has; and that every file of tests is part of a program.
 
 use crate::failure::Failure;
 use crate::tree::Tree;
@@ -31,9 +31,28 @@ pub fn check(tree: &Tree) -> Result<(), Failure> {
             faults.extend(head_fault(file, &text).map(|what| format!("{file}:1: {what}")));
         }
     }
+    for file in &files {
+        let Some((package, name)) = test_file(file) else { continue };
+        let program = format!("{package}/tests/all.rs");
+        if !files.contains(&program) {
+            continue;
+        }
+        let taken = tree.read(&program)?.lines().any(|line| line == format!("mod {name};"));
+        let apart = tree.read(&format!("{package}/Cargo.toml"))?.contains(&format!("\nname = \"{name}\"\n"));
+        if !taken && !apart {
+            faults.push(format!("{file}:1: nothing runs these tests; write `mod {name};` in {program}"));
+        }
+    }
     Failure::unless_empty(faults)?;
     println!("{} files", files.len());
     Ok(())
+}
+
+/// The folder of the package and the name of a file or a folder of tests.
+fn test_file(file: &str) -> Option<(&str, &str)> {
+    let (package, path) = file.strip_suffix(".rs")?.split_once("/tests/")?;
+    let name = path.strip_suffix("/mod").or_else(|| path.strip_suffix("/main")).unwrap_or(path);
+    (name != "all" && !name.contains('/')).then_some((package, name))
 }
 
 /// Lines (from 1) with the paths on them that start at a private root.
@@ -98,6 +117,15 @@ mod tests {
         assert_eq!(foreign_sources(&bad).collect::<Vec<_>>(), [(3, "registry+https://mirror.example/index")]);
         let package = "  \"resolved\": \"https://mirror.example/three.tgz\",";
         assert_eq!(foreign_sources(package).count(), 1);
+    }
+
+    #[test]
+    fn files_of_tests() {
+        assert_eq!(test_file("crates/a/tests/b.rs"), Some(("crates/a", "b")));
+        assert_eq!(test_file("crates/a/tests/rooms/mod.rs"), Some(("crates/a", "rooms")));
+        assert_eq!(test_file("crates/a/tests/rooms/edit.rs"), None);
+        assert_eq!(test_file("crates/a/tests/all.rs"), None);
+        assert_eq!(test_file("crates/a/src/b.rs"), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Formulas, conditions, quantities, units and laws with faults put in by machine: an answer or an error, never a panic.
 //!
-//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-formal --test mutations` goes on for ten minutes.
+//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-formal mutations` goes on for ten minutes.
 
 #[path = "../../../fuzz/src/law.rs"]
 mod law;

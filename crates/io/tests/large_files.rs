@@ -1,13 +1,10 @@
 //! Files of hundreds of thousands of lines: read in a time that goes with their length.
 
-#[path = "../../../fuzz/src/mutator.rs"]
-#[expect(dead_code, reason = "only the guard is used here")]
-mod mutator;
-
-use mutator::guard;
 use souple_io::{FORMATS, Output, Shapes, read_dataset_bytes};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
+
+use crate::mutator::guard;
 
 /// A time for some MB [s]: a single pass takes a second or two without optimisation on a busy machine; a pass for each line
 /// takes minutes.

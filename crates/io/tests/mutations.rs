@@ -1,17 +1,15 @@
 //! Mesh files of every format with faults put in by machine: a mesh or an error, never a panic; what is read can be
 //! written and read again.
 //!
-//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-io --test mutations` goes on for ten minutes.
-
-#[path = "../../../fuzz/src/mutator.rs"]
-mod mutator;
+//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-io mutations` goes on for ten minutes.
 
 use std::path::Path;
 
-use mutator::{Mutator, guard, repeat};
 use souple_io::{FORMATS, Field, Format, Output, Shapes, read_dataset_bytes};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Group, Mesh};
+
+use crate::mutator::{Mutator, guard, repeat};
 use souple_table::Entry;
 
 /// A tetrahedron and a hexahedron with facets, a group and a field.

@@ -1,8 +1,6 @@
 //! Bodies of two laws against bodies whose cells have these laws from the start, and what switching does.
 #![allow(non_snake_case)]
 
-mod common;
-
 use std::sync::Arc;
 
 use souple_engine::{Configuration, Force, TangentWeights};
@@ -14,6 +12,8 @@ use souple_models::solids::{
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
+
+use crate::common;
 
 fn bar(element: &str) -> Mesh {
     let values = Values::new()

@@ -1,8 +1,6 @@
 //! Formulations of one body against each other: the exact ones to rounding, the others by what they promise.
 #![allow(non_snake_case)]
 
-mod common;
-
 use std::sync::Arc;
 
 use souple_engine::{Configuration, Force, TangentWeights};
@@ -18,6 +16,8 @@ use souple_models::solids::{
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
+
+use crate::common;
 
 fn bar(element: &str) -> Mesh {
     bar_of(element, [4.0, 2.0, 2.0])

@@ -4,8 +4,6 @@
 // F, P, Q as in the equations
 #![allow(non_snake_case)]
 
-mod common;
-
 use pulp::{Arch, Simd, WithSimd};
 use souple_math::{Dual, Lanes, Mat3, Real, Vec3, exponential};
 use souple_models::materials::{
@@ -13,6 +11,8 @@ use souple_models::materials::{
     StVenantKirchhoff, StableNeoHookean, TABLE, cauchy_stress,
 };
 use souple_table::{Value, Values};
+
+use crate::common;
 
 const YOUNGS_MODULUS: f64 = 1e7;
 

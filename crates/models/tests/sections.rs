@@ -2,14 +2,14 @@
 //! answers of small strain and of neo-Hookean rubber.
 #![allow(non_snake_case)]
 
-mod common;
-
 use souple_engine::{Configuration, Force, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh};
 use souple_models::materials::{self, AnyLaw, Material};
 use souple_models::solids::{Quadrature, SECTIONS, Section, SolidDescription, SolidForce, lumped_mass};
 use souple_table::{Value, Values};
+
+use crate::common;
 
 const YOUNG: f64 = 1e6;
 const POISSON: f64 = 0.3;

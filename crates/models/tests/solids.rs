@@ -1,8 +1,6 @@
 //! The battery for every law on every element, and the discrete answers of independent solvers.
 #![allow(non_snake_case)]
 
-mod common;
-
 use std::sync::Arc;
 
 use souple_engine::implicit::NewtonSettings;
@@ -22,6 +20,8 @@ use souple_models::solids::{
 use souple_solve::dense::{self, take_absolute};
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
+
+use crate::common;
 
 const ELEMENTS: [&str; 11] = [
     "tet4",

@@ -1,7 +1,5 @@
 //! Forces add up: what a system does with several is the sum of what each does alone.
 
-mod common;
-
 use souple_engine::{
     Configuration, Force, Kinematics, Mass, Model, State, System, TangentWeights, UnknownKind,
 };
@@ -13,6 +11,8 @@ use souple_models::solids::{
     Quadrature, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, lumped_mass,
 };
 use souple_table::{Value, Values};
+
+use crate::common;
 
 const FORCES: usize = 5;
 /// [s]

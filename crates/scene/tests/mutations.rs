@@ -1,6 +1,6 @@
 //! Scenes with faults put in by machine: each gives a scene or a diagnostic, never a panic, and none takes long.
 //!
-//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-scene --test mutations` goes on for ten minutes.
+//! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-scene mutations` goes on for ten minutes.
 
 #[path = "../../../fuzz/src/mutator.rs"]
 mod mutator;

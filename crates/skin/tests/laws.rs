@@ -1,11 +1,8 @@
 //! Laws that a skin obeys: a sphere under tension shrinks by its formula, a skin comes to rest on its target, what is held
 //! constant stays, and what splits is counted.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{number, part, skin, term};
 use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -13,6 +10,8 @@ use souple_skin::target::particles::Density;
 use souple_skin::target::{Combine, ISO, Moment, Part, Particle, Particles, Target, WARPS};
 use souple_skin::{Lattice, Polygons, Skin, SkinScratch};
 use souple_table::{Value, Values};
+
+use crate::common::{number, part, skin, term};
 
 fn ball(skin: &Skin, radius: f64, scratch: &mut SkinScratch) -> FieldState {
     let corner = Vec3::new(1.1, 1.1, 1.1) * radius;

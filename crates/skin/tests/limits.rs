@@ -1,16 +1,15 @@
 //! What limits a skin's sub-steps, and how it ends where it cannot go on.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{number, part, skin, term};
 use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_skin::target::particles::Cloud;
 use souple_skin::target::{ISO, Moment, Part, Target};
 use souple_skin::{Skin, SkinError, SkinScratch};
 use souple_table::Value;
+
+use crate::common::{number, part, skin, term};
 
 fn ball(skin: &Skin, radius: f64, scratch: &mut SkinScratch) -> FieldState {
     let corner = Vec3::new(1.1, 1.1, 1.1) * radius;

@@ -1,16 +1,15 @@
 //! Orders of the method itself: values at the nodes against exact distances, without triangles between.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{nodes, number, skin, term};
 use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_skin::target::particles::Density;
 use souple_skin::target::{ISO, Moment, Part, Particle, Particles, Target};
 use souple_skin::{Skin, surface_of};
 use souple_table::Value;
+
+use crate::common::{nodes, number, skin, term};
 
 /// What tension makes of a surface in a time [s], by its nodes: where `exact` is 0 the surface must be.
 struct Shrinking {

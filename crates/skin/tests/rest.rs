@@ -1,11 +1,8 @@
 //! Where skins begin and where they rest: from coarse to fine as from all nodes, and at the surface where attraction and
 //! tension are equal.
 
-mod common;
-
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use common::{number, part, skin, term};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, TriangleSurface};
 use souple_skin::target::{
@@ -14,6 +11,8 @@ use souple_skin::target::{
 };
 use souple_skin::{Beginning, PlacedTarget, Polygons, Skin};
 use souple_table::{Value, Values};
+
+use crate::common::{number, part, skin, term};
 
 fn warp(name: &str, rate: f64) -> Box<dyn Warp> {
     let entry = WARPS.find(name).unwrap();

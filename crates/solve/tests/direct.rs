@@ -1,14 +1,13 @@
 //! Direct factors against dense elimination, and matrices that have none.
 #![allow(non_snake_case, reason = "symbols of the mathematics")]
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{chain, dense_solve, distance, noise, norm, truss};
 use souple_math::{Mat3, Vec3};
 use souple_solve::direct::Factor;
 use souple_solve::{BlockMatrix, DirectSolver, LuSolver, Pattern, SolveError};
+
+use crate::common::{chain, dense_solve, distance, noise, norm, truss};
 
 /// `‖x − x*‖ ≤ κ n ε ‖x*‖` with `κ ≤ ‖A‖₁` (the smallest eigenvalue is 1).
 #[test]

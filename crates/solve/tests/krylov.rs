@@ -1,9 +1,6 @@
 //! Iterative methods and preconditioners against dense answers and their defining properties.
 #![allow(non_snake_case, reason = "symbols of the mathematics")]
 
-mod common;
-
-use common::{chain, dense_solve, distance, noise, norm, on_threads, truss};
 use souple_math::{Mat3, Vec3};
 use souple_solve::krylov::{
     BicgstabWorkspace, ConjugateGradientWorkspace, GmresWorkspace, Report, Settings, Stop, bicgstab,
@@ -15,6 +12,8 @@ use souple_solve::precondition::{
 };
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, Preconditioner, SolveError, reduce};
 use souple_table::Values;
+
+use crate::common::{chain, dense_solve, distance, noise, norm, on_threads, truss};
 
 fn every_preconditioner(
     matrix: &BlockMatrix,

@@ -1,11 +1,10 @@
 //! Sparse products and constraints against their dense definitions.
 #![allow(non_snake_case, reason = "symbols of the mathematics")]
 
-mod common;
-
-use common::{chain, distance, flat, noise, norm, on_threads, truss};
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, SolveError, reduce};
+
+use crate::common::{chain, distance, flat, noise, norm, on_threads, truss};
 
 /// `y = A x` and `r = b − A x` equal the dense sums, to the rounding of 81 products per row.
 #[test]

@@ -1,13 +1,12 @@
 //! Eigenpairs of chains and free bodies.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{chain, truss};
 use souple_math::Vec3;
 use souple_solve::modes::{Settings, lowest_modes};
 use souple_solve::{BlockMatrix, LinearOperator, SolveError, reduce};
+
+use crate::common::{chain, truss};
 
 /// One mass per block.
 fn lumped(stiffness: &BlockMatrix, masses: &[f64]) -> BlockMatrix {

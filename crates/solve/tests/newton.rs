@@ -1,14 +1,13 @@
 //! Newton on small problems whose behaviour is known.
 #![allow(non_snake_case, reason = "symbols of the mathematics")]
 
-mod common;
-
 use std::convert::Infallible;
 
-use common::{chain, dense_solve};
 use souple_math::{Mat3, Vec3};
 use souple_solve::newton::{NewtonProblem, Settings, Stop, Trial, Workspace, newton};
 use souple_solve::{BlockMatrix, LinearOperator, krylov, reduce};
+
+use crate::common::{chain, dense_solve};
 
 /// Masses on a chain with hardening springs to ground: `Φ = q·A q/2 + Σ c q⁴/4 − b·q`, refused beyond `|q| = limit`.
 struct Hardening {

@@ -1,13 +1,12 @@
 //! The solvers of the scene format, each by its name.
 
-mod common;
-
-use common::{chain, dense_solve, distance, noise, norm, truss};
 use souple_math::Vec3;
 use souple_solve::precondition::Geometry;
 use souple_solve::solvers::{self, LinearSolver};
 use souple_solve::{BlockMatrix, SolveError};
 use souple_table::{Value, Values};
+
+use crate::common::{chain, dense_solve, distance, noise, norm, truss};
 
 fn build(name: &str, values: Values, matrix: &BlockMatrix, places: &[Vec3]) -> Box<dyn LinearSolver> {
     let entry = solvers::TABLE.find(name).unwrap();

@@ -1,9 +1,7 @@
 //! What is answered where the work itself goes wrong: full disks, folders that are taken, runs that blow up, surfaces that
 //! enclose nothing.
 
-mod common;
-
-use common::{CUBE, Folder, souple, souple_in};
+use crate::common::{CUBE, Folder, souple, souple_in};
 
 /// What a run came to is told, though the disk is too full to record it.
 #[cfg(target_os = "linux")]

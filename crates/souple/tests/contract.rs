@@ -1,13 +1,12 @@
 //! The command line as a contract: exit statuses, one JSON document, errors in one form, clean interruption.
 
-mod common;
-
 use std::io::PipeReader;
 use std::path::Path;
 use std::process::Stdio;
 
-use common::{Answer, CUBE, Folder, assert_errors, assert_report, command, souple};
 use serde_json::Value;
+
+use crate::common::{Answer, CUBE, Folder, assert_errors, assert_report, command, souple};
 
 /// A folder with a small scene.
 fn cube() -> (Folder, String) {

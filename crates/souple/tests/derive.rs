@@ -1,8 +1,6 @@
 //! `souple derive`: what can be derived is listed, and written as counts, files and programs.
 
-mod common;
-
-use common::{Folder, souple};
+use crate::common::{Folder, souple};
 
 /// EXP-2, tables 3.4 to 3.7: the counts of the source stand beside ours, cut and whole, and ours are no more.
 #[test]

@@ -1,9 +1,8 @@
 //! Equal bits: for any number of threads, across snapshots, in replays, on every shipped scene.
 
-mod common;
-
-use common::{CUBE, Folder, scene_names, scenes, souple};
 use serde_json::Value;
+
+use crate::common::{CUBE, Folder, scene_names, scenes, souple};
 
 /// Steps of each scene: an even number, so that there is a middle.
 fn steps_of(name: &str) -> u64 {

@@ -3,9 +3,7 @@
 //!
 //! Faulty meshes have a file of their own, `mesh_faults.rs`.
 
-mod common;
-
-use common::{Answer, CUBE, Folder, assert_errors, souple, souple_in};
+use crate::common::{Answer, CUBE, Folder, assert_errors, souple, souple_in};
 
 /// What is asked, and how it must end.
 struct Fault<'a> {

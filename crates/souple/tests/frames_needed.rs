@@ -1,9 +1,8 @@
 //! `souple check --accuracy`: how many frames a body takes.
 
-mod common;
-
-use common::{scenes, souple};
 use serde_json::Value;
+
+use crate::common::{scenes, souple};
 
 /// What is told of a body, as JSON.
 fn needed(scene: &str, body: &str, accuracy: &str, settings: &[&str]) -> Value {

@@ -1,12 +1,11 @@
 //! Laws as text are kept between runs of the program, where the environment says, and change nothing.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Answer, Folder, command};
 use serde_json::Value;
+
+use crate::common::{Answer, Folder, command};
 
 const SCENE: &str = r#"
 format = 1

@@ -1,9 +1,8 @@
 //! Faulty mesh files of every format through the program: cut off, garbage, not finite, flat, tangled, absurd.
 
-mod common;
-
-use common::{CUBE, Folder, assert_errors, souple_in};
 use serde_json::Value;
+
+use crate::common::{CUBE, Folder, assert_errors, souple_in};
 
 /// Extensions of the formats that hold volumes and can be written.
 const VOLUMES: &[&str] = &["msh", "msh2", "vtu", "vtk"];

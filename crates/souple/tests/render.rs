@@ -1,10 +1,8 @@
 //! `souple render`: every kind of file, from scenes and from runs, and requests that cannot be met.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Answer, CUBE, Folder, assert_errors, souple_in};
+use crate::common::{self, Answer, CUBE, Folder, assert_errors, souple_in};
 
 fn render(folder: &Folder, source: &str, out: &str, more: &[&str]) -> Answer {
     // surfaces have no pixels

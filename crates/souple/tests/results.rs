@@ -1,11 +1,10 @@
 //! What a run leaves, and how it goes on: its folder, snapshots, recordings away from where they were made.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Answer, CUBE, Folder, command, souple, souple_in};
 use serde_json::Value;
+
+use crate::common::{Answer, CUBE, Folder, command, souple, souple_in};
 
 /// Names of the files below a folder of the test.
 fn below(folder: &Folder, name: &str) -> Vec<String> {

@@ -1,9 +1,7 @@
 //! Every shipped scene is in the table of the validation cases and valid, and expectations are judged and reported. That
 //! scenes run, and that what they expect is observed, is tested from outside, in `tests/end_to_end`.
 
-mod common;
-
-use common::{scene_names, scenes, souple};
+use crate::common::{self, scene_names, scenes, souple};
 
 /// What is legal and doubtful in a scene, and said.
 const WARNS: &[(&str, &str)] = &[

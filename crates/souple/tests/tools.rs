@@ -1,9 +1,8 @@
 //! The smaller commands: meshes, lists, comparisons.
 
-mod common;
-
-use common::{CUBE, Folder, souple, souple_in};
 use serde_json::Value;
+
+use crate::common::{self, CUBE, Folder, souple, souple_in};
 
 fn names(kind: &str) -> Vec<String> {
     let list = souple(["list", kind, "--json"]).ends(0).json();

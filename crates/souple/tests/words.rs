@@ -1,8 +1,6 @@
 //! What the program says: to people in sentences, of wrong requests where they are and what would be right.
 
-mod common;
-
-use common::{CUBE, Folder, souple, souple_in};
+use crate::common::{self, CUBE, Folder, souple, souple_in};
 
 /// Meshes are told in sentences; JSON is for those who ask for it.
 #[test]

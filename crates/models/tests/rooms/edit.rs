@@ -3,8 +3,8 @@
 use souple_engine::{Edit, EditError};
 use souple_math::Vec3;
 
-use crate::forces::Spring;
-use crate::{points, stepper, world};
+use super::forces::Spring;
+use super::{points, stepper, world};
 
 fn two_points(name: &str) -> souple_engine::World {
     let spring = Spring { a: 0, b: 1, stiffness: 10.0, damping: 0.1 };

@@ -4,7 +4,7 @@ use souple_engine::{Force, World};
 use souple_math::Vec3;
 use souple_models::loads::{Attachments, Combination, GroundSpring, GroundSprings, Link};
 
-use crate::{points, stepper, stepper_of, world};
+use super::{points, stepper, stepper_of, world};
 
 const MASS: f64 = 0.5;
 const STIFFNESS: f64 = 200.0;

@@ -10,7 +10,7 @@ use souple_engine::{
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
-use crate::{points, stepper};
+use super::{points, stepper};
 
 /// A pressure on three cells along x that rises where the point is.
 struct Pressure;

@@ -10,8 +10,8 @@ use souple_models::materials;
 use souple_models::solids::{SolidDescription, SolidForce};
 use souple_table::{Value, Values};
 
-use crate::forces::Push;
-use crate::world;
+use super::forces::Push;
+use super::world;
 
 /// One cube of five tetrahedra: corners 0..4 (x = 0) are free points, 4..8 (x = 1) ride on the frame.
 fn cube() -> Mesh {

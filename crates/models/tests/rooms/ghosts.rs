@@ -3,8 +3,8 @@
 use souple_engine::{DerivedRow, Feedback, Kinematics, Mass, System, UnknownKind};
 use souple_math::Vec3;
 
-use crate::forces::Spring;
-use crate::{stepper, world};
+use super::forces::Spring;
+use super::{stepper, world};
 
 /// Four points; row 4 is the middle of points 0 and 1, row 5 that of row 4 and point 2. A spring pulls row 5 to
 /// point 3.

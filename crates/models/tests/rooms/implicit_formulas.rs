@@ -10,8 +10,8 @@ use souple_models::loads::{
     Attachments, Combination, FormulaVector, GroundSpring, GroundSprings, Link, MassDamping, PointLoad,
 };
 
-use crate::forces::PlasticLink;
-use crate::{points, stepper_with, world};
+use super::forces::PlasticLink;
+use super::{points, stepper_with, world};
 
 /// Led to and fro, from rest.
 #[derive(Debug)]

@@ -13,8 +13,8 @@ use souple_engine::{
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
-use crate::forces::Spring;
-use crate::{points, stepper_of, world};
+use super::forces::Spring;
+use super::{points, stepper_of, world};
 
 /// Pulls at a point, and wishes for an end of the step in which it is asked to while it is armed.
 struct Wishing {

@@ -2,8 +2,8 @@
 
 use souple_math::Vec3;
 
-use crate::forces::{PlasticLink, Push};
-use crate::{points, stepper, world};
+use super::forces::{PlasticLink, Push};
+use super::{points, stepper, world};
 
 /// Pulled far beyond its limit and let go by an opposite push, the link keeps the same plastic stretch under
 /// symplectic Euler, Runge–Kutta methods and implicit formulas with Newton, to the order of the step.

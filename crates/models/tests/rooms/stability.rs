@@ -9,7 +9,7 @@ use souple_models::loads::{
     Attachments, Combination, Gravity, GroundSpring, GroundSprings, Link, RigidMotion,
 };
 
-use crate::{points, stepper, world};
+use super::{points, stepper, world};
 
 const STIFFNESS: f64 = 800.0;
 

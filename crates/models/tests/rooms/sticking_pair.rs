@@ -8,8 +8,8 @@ use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, State, T
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
-use crate::forces::Push;
-use crate::{points, stepper, world};
+use super::forces::Push;
+use super::{points, stepper, world};
 
 /// Ground at y = 0 that holds a touching point where it first touched.
 struct StickyGround {

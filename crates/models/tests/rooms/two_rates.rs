@@ -4,7 +4,7 @@ use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
 use souple_engine::{Model, State};
 use souple_math::Vec3;
 
-use crate::{points, stepper};
+use super::{points, stepper};
 
 /// Momentum is exchanged exactly, one period late: at every meeting the two momenta and the impulse still
 /// to be delivered sum to nothing.

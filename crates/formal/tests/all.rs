@@ -1,0 +1,6 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod hand_answers;
+mod mutations;
+mod properties;

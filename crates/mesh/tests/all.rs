@@ -1,0 +1,9 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod centred;
+mod faults;
+mod how_to;
+mod lost;
+mod manifold;
+mod reference_bars;

@@ -1,0 +1,20 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod adaptive;
+mod common;
+mod crowds;
+mod emitted_code;
+mod formulations;
+mod frames;
+mod implicit;
+mod kept_laws;
+mod materials;
+mod multiresolution;
+mod network;
+mod octree;
+mod rooms;
+mod sections;
+mod solids;
+mod sums;
+mod written_laws;

@@ -1,0 +1,11 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod crowds;
+mod hands;
+mod kneaded;
+mod levels_resume;
+mod monitor;
+mod networks_resume;
+mod pictures;
+mod sounds;

@@ -1,0 +1,20 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod contacts;
+mod controls;
+mod doubts;
+mod faults;
+mod files;
+mod frames;
+mod hanging;
+mod heat;
+mod liver;
+mod material_fields;
+mod modules;
+mod mutations;
+mod networks;
+mod quantities;
+mod scenes;
+mod skins;
+mod surfaces;

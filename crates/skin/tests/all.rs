@@ -1,0 +1,8 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod common;
+mod laws;
+mod limits;
+mod orders;
+mod rest;

@@ -1,0 +1,10 @@
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
+//! the whole simulator in it.
+
+mod common;
+mod direct;
+mod krylov;
+mod matrix;
+mod modes;
+mod newton;
+mod table;
