@@ -10,7 +10,7 @@
 mod corotational;
 mod derived;
 mod hyperelastic;
-mod invariants;
+pub(crate) mod invariants;
 mod isochoric;
 pub(crate) mod kept;
 mod law;

@@ -1,7 +1,9 @@
 //! The formulations side by side: time of force and derivative, memory, and the error against the exact force.
 
-use super::laws::{ForceTimes, Sampling, bar, force_times, off};
-use super::timing::Held;
+use souple_mesh::ElementKind;
+
+use super::laws::{ForceTimes, OfTable, Sampling, TABLE, bar, force_times, off};
+use super::timing::{Held, Timed, scene};
 use super::{Effort, Figure};
 
 /// How often derived expressions must outrun the literal sums (EXP-20), by law.
@@ -16,108 +18,172 @@ const BY_DERIVATIVE: [(&str, &str, Option<f64>); 4] = [
     ("hex8", "prism6", None),
 ];
 
-/// Formulation, element, law.
-type Variant = (&'static str, &'static str, &'static str);
-
-/// What is compared; `samples` is there for each law on each element, and is exact.
-const VARIANTS: &[Variant] = &[
-    ("samples", "tet4", "st_venant_kirchhoff"),
-    ("derived", "tet4", "st_venant_kirchhoff"),
-    ("grouped_constants", "tet4", "st_venant_kirchhoff"),
-    ("tensor_mass", "tet4", "st_venant_kirchhoff"),
-    ("four_loops", "tet4", "st_venant_kirchhoff"),
-    ("mass_spring", "tet4", "st_venant_kirchhoff"),
-    ("samples", "tet4", "linear"),
-    ("derived", "tet4", "linear"),
-    ("grouped_constants", "tet4", "linear"),
-    ("tensor_mass", "tet4", "linear"),
-    ("four_loops", "tet4", "linear"),
-    ("samples", "tet4", "corotational"),
-    ("element_corotational", "tet4", "corotational"),
-    ("samples", "hex8", "st_venant_kirchhoff"),
-    ("derived", "hex8", "st_venant_kirchhoff"),
-    ("grouped_constants", "hex8", "st_venant_kirchhoff"),
-    ("samples", "hex8", "linear"),
-    ("derived", "hex8", "linear"),
-    ("shared_stiffness", "hex8", "linear"),
-    ("grouped_constants", "hex8", "linear"),
-    ("samples", "hex8", "corotational"),
-    ("element_corotational", "hex8", "corotational"),
-    ("samples", "prism6", "st_venant_kirchhoff"),
-    ("derived", "prism6", "st_venant_kirchhoff"),
-    ("grouped_constants", "prism6", "st_venant_kirchhoff"),
-    ("samples", "prism6", "linear"),
-    ("derived", "prism6", "linear"),
-    ("shared_stiffness", "prism6", "linear"),
-    ("samples", "pyramid5", "linear"),
-    ("derived", "pyramid5", "linear"),
-    ("shared_stiffness", "pyramid5", "linear"),
-    ("samples", "pyramid5", "st_venant_kirchhoff"),
-    ("derived", "pyramid5", "st_venant_kirchhoff"),
-    ("grouped_constants", "pyramid5", "st_venant_kirchhoff"),
-    ("samples", "tri3", "linear"),
-    ("derived", "tri3", "linear"),
-    ("samples", "tri3", "st_venant_kirchhoff"),
-    ("derived", "tri3", "st_venant_kirchhoff"),
+/// What is compared. `samples` is there for each law on each element, and is exact; the one with a shared stiffness is what bodies do where
+/// nothing is said.
+const FORMULATIONS: [&str; 8] = [
+    "samples",
+    TAKEN,
+    "derived",
+    "grouped_constants",
+    "tensor_mass",
+    "four_loops",
+    "element_corotational",
+    "mass_spring",
 ];
+const TAKEN: &str = "shared_stiffness";
 
-/// Elements of the reference bar: about 10,000, and about 100,000.
-fn cells(element: &str, is_large: bool) -> u32 {
-    match (element, is_large) {
-        ("tet4", false) => 6,
-        ("tet4", true) => 12,
-        ("hex8", false) => 10,
-        ("hex8", true) => 21,
-        ("tri3", false) => 22,
-        ("tri3", true) => 70,
-        ("prism6", false) => 8,
-        ("prism6", true) => 17,
-        (_, false) => 6,
-        (_, true) => 12,
+/// How far from the law by samples what is exact may be: some thousand roundings.
+const EXACT: f64 = 1e-9;
+
+/// Cells across the bar for about so many elements.
+fn cells(kind: ElementKind, elements: f64) -> u32 {
+    let (in_a_cube, across) = match kind.corners() {
+        ElementKind::Tet4 | ElementKind::Pyramid5 => (6.0, 3.0),
+        ElementKind::Prism6 => (2.0, 3.0),
+        ElementKind::Tri3 => (2.0, 2.0),
+        other => (1.0, f64::from(other.dimension() as u32)),
+    };
+    (elements / (10.0 * in_a_cube)).powf(1.0 / across).round() as u32
+}
+
+/// A law on an element by one formulation.
+struct Measured {
+    formulation: &'static str,
+    element: &'static str,
+    law: &'static str,
+    times: ForceTimes,
+}
+
+impl Measured {
+    /// Every formulation that takes the law on the element; elements of higher order by those of bodies alone: the others are of the
+    /// literature on linear ones.
+    fn of(kind: ElementKind, of_table: &OfTable, size: f64, effort: Effort) -> Result<Vec<Self>, String> {
+        let (law, numbers, _) = *of_table;
+        let settings = |across: u32, formulation: &str| {
+            let mut settings = bar(kind.name(), across, law);
+            // the law that the bar was made with gives way
+            settings.pop();
+            settings.push(format!("bodies.bar.material={{ name = \"{law}\", {numbers}, density = 1000 }}"));
+            settings.push(format!("bodies.bar.formulation={{ name = \"{formulation}\" }}"));
+            settings
+        };
+        // as many samples and nodes
+        let across = cells(kind, if kind.is_linear() { size } else { 0.1 * size });
+        let asked = if kind.is_linear() { &FORMULATIONS[..] } else { &FORMULATIONS[..3] };
+        let mut measured = Vec::new();
+        for &formulation in asked {
+            // what takes the law by samples and not otherwise has no such formulation
+            let is_there = formulation == FORMULATIONS[0]
+                || scene("cantilever_dynamic", &settings(1, formulation)).is_ok();
+            if is_there {
+                let sampling =
+                    Sampling { threads: 1, samples: effort.choose(3, 11), in_a_row: 1, beside: None };
+                let times = force_times(&settings(across, formulation), sampling)?;
+                measured.push(Self { formulation, element: kind.name(), law, times });
+            }
+        }
+        Ok(measured)
+    }
+
+    /// Of force and derivative, against the law by samples.
+    fn errors(&self, exact: &Self) -> [f64; 2] {
+        let Self { times, .. } = self;
+        [off(&exact.times.forces, &times.forces), off(&exact.times.derivatives, &times.derivatives)]
     }
 }
 
-/// Figures of each formulation: elements a second, derivative products a second, bytes of an element; then how much faster
-/// derived expressions are than the literal sums of the tensor-mass method, and than the law by samples.
+/// Figures of each law on each element by each formulation: elements a second, derivative products a second, bytes of an element;
+/// of each pair how much faster what bodies take is than the fastest exact formulation beside it; then how much faster derived
+/// expressions are than the literal sums of the tensor-mass method, and than the law by samples.
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
-    let sizes = effort.choose(&[("10k", false)][..], &[("10k", false), ("100k", true)]);
-    for (size, is_large) in sizes {
-        let mut measured: Vec<(&Variant, ForceTimes)> = Vec::new();
-        for variant in VARIANTS {
-            let (formulation, element, law) = variant;
-            let mut settings = bar(element, cells(element, *is_large), law);
-            settings.push(format!("bodies.bar.formulation={{ name = \"{formulation}\" }}"));
-            let sampling = Sampling { threads: 1, samples: effort.choose(3, 11), in_a_row: 1, beside: None };
-            measured.push((variant, force_times(&settings, sampling)?));
-        }
-        let of = |wanted: Variant| {
-            measured.iter().find(|(variant, _)| **variant == wanted).map(|(_, times)| times)
-        };
-        for ((formulation, element, law), times) in &measured {
-            let exact = of(("samples", element, law)).ok_or("the law by samples is measured too")?;
-            let held = |error, what: &str| Held { error, error_of: what.to_owned(), baseline: None };
-            let row = format!("{name}_{size}_{element}_{law}_{formulation}");
-            let force = held(off(&exact.forces, &times.forces), "force by samples");
-            let derivative = held(off(&exact.derivatives, &times.derivatives), "derivative by samples");
-            figures.push(times.force.elements_per_second(&format!("{row}_force"), &force));
-            figures.push(times.derivative.elements_per_second(&format!("{row}_derivative"), &derivative));
-        }
-        for (law, wanted) in OVER_FOUR_LOOPS {
-            let derived = of(("grouped_constants", "tet4", law)).ok_or("it is among the variants")?;
-            for (other, wanted) in [("four_loops", Some(wanted)), ("samples", None)] {
-                let other_times = of((other, "tet4", law)).ok_or("it is among the variants")?;
-                let row = format!("{name}_{size}_tet4_{law}_over_{other}");
-                figures.extend(ratios(&row, wanted, derived, other_times));
+    let sizes = effort.choose(&[("10k", 1e4)][..], &[("10k", 1e4), ("100k", 1e5)]);
+    for (size, elements) in sizes {
+        let name = format!("{name}_{size}");
+        let mut compared = Vec::new();
+        for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() > 1) {
+            for of_table in &TABLE {
+                let measured = Measured::of(kind, of_table, *elements, effort)?;
+                figures.extend(of_pair(&name, &measured)?);
+                let is_compared = |one: &Measured| BY_HAND_AND_BY_TAPE.contains(&one.formulation);
+                compared.extend(measured.into_iter().filter(is_compared).filter(|one| {
+                    kind.is_linear() && OVER_FOUR_LOOPS.iter().any(|(law, _)| *law == one.law)
+                }));
             }
         }
-        for (element, other, wanted) in BY_DERIVATIVE {
-            let [first, second] =
-                [element, other].map(|element| of(("grouped_constants", element, "st_venant_kirchhoff")));
-            let (first, second) = first.zip(second).ok_or("both are among the variants")?;
-            let row = format!("{name}_{size}_derivative_{element}_over_{other}");
-            figures.push(per_element(&row, wanted, first, second));
+        figures.extend(comparisons(&name, &compared)?);
+    }
+    Ok(figures)
+}
+
+/// What derived expressions are compared with, and they.
+const BY_HAND_AND_BY_TAPE: [&str; 3] = ["samples", "grouped_constants", "four_loops"];
+
+fn of_pair(name: &str, measured: &[Measured]) -> Result<Vec<Figure>, String> {
+    let exact = measured.first().ok_or("the law by samples is measured")?;
+    let mut figures = Vec::new();
+    for one in measured {
+        let [force, derivative] = one.errors(exact);
+        let held = |error, what: &str| Held { error, error_of: what.to_owned(), baseline: None };
+        let row = format!("{name}_{}_{}_{}", one.element, one.law, one.formulation);
+        let (force, derivative) =
+            (held(force, "force by samples"), held(derivative, "derivative by samples"));
+        figures.push(one.times.force.elements_per_second(&format!("{row}_force"), &force));
+        figures.push(one.times.derivative.elements_per_second(&format!("{row}_derivative"), &derivative));
+    }
+    let taken = measured.iter().find(|one| one.formulation == TAKEN).ok_or("bodies take every law")?;
+    let seconds = |one: &Measured| least(&one.times.force) + least(&one.times.derivative);
+    let others = measured.iter().filter(|one| one.formulation != TAKEN);
+    let fastest = others
+        .filter(|one| one.errors(exact).iter().all(|error| *error < EXACT))
+        .min_by(|a, b| seconds(a).total_cmp(&seconds(b)))
+        .ok_or("the law by samples is exact")?;
+    let held = Held {
+        error: f64::max(taken.errors(fastest)[0], taken.errors(fastest)[1]),
+        error_of: format!(
+            "forces and derivatives by {}, the fastest exact of the others",
+            fastest.formulation
+        ),
+        baseline: None,
+    };
+    let row = format!("{name}_{}_{}_taken_over_{}", taken.element, taken.law, fastest.formulation);
+    figures.push(taken.times.force.times_as_fast(&format!("{row}_force"), &fastest.times.force, &held));
+    figures.push(taken.times.derivative.times_as_fast(
+        &format!("{row}_derivative"),
+        &fastest.times.derivative,
+        &held,
+    ));
+    Ok(figures)
+}
+
+/// The least time, of the processor where it is known.
+fn least(timed: &Timed) -> f64 {
+    let times = if timed.processor.is_empty() { &timed.seconds } else { &timed.processor };
+    times.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn comparisons(name: &str, measured: &[Measured]) -> Result<Vec<Figure>, String> {
+    let of = |formulation: &str, element: &str, law: &str| {
+        let is_it = |one: &&Measured| (one.formulation, one.element, one.law) == (formulation, element, law);
+        measured.iter().find(is_it).map(|one| &one.times).ok_or("it is among what is measured")
+    };
+    let mut figures = Vec::new();
+    for (law, wanted) in OVER_FOUR_LOOPS {
+        let derived = of("grouped_constants", "tet4", law)?;
+        for (other, wanted) in [("four_loops", Some(wanted)), ("samples", None)] {
+            let row = format!("{name}_tet4_{law}_over_{other}");
+            figures.extend(ratios(&row, wanted, derived, of(other, "tet4", law)?));
         }
+    }
+    for (element, other, wanted) in BY_DERIVATIVE {
+        let first = of("grouped_constants", element, "st_venant_kirchhoff")?;
+        let second = of("grouped_constants", other, "st_venant_kirchhoff")?;
+        figures.push(per_element(
+            &format!("{name}_derivative_{element}_over_{other}"),
+            wanted,
+            first,
+            second,
+        ));
     }
     Ok(figures)
 }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use souple_engine::{TangentWeights, World};
 use souple_math::Vec3;
+use souple_mesh::ElementKind;
 use souple_models::materials::{KeptLaws, TextLaw, WRITTEN_LAWS};
 
 use super::timing::{Clock, Held, Timed, Timing, bend, median, over, scene, thread_counts, with_threads};
@@ -95,12 +96,12 @@ pub fn law_text(name: &str, writing: Writing, most: f64, effort: Effort) -> Resu
 }
 
 /// A law of the table: its name, its numbers there and in its text.
-type OfTable = (&'static str, &'static str, &'static str);
+pub type OfTable = (&'static str, &'static str, &'static str);
 
 const MODULI: &str = "youngs_modulus = 1e7, poissons_ratio = 0.25";
 const LAME: &str = "mu = \"4e6 Pa\", lambda = \"4e6 Pa\"";
 /// All of them that texts of the library are.
-const TABLE: [OfTable; 8] = [
+pub const TABLE: [OfTable; 8] = [
     ("linear", MODULI, LAME),
     ("corotational", MODULI, LAME),
     ("st_venant_kirchhoff", MODULI, LAME),
@@ -397,10 +398,10 @@ pub fn off(a: &[Vec3], b: &[Vec3]) -> f64 {
     (distance / a.iter().map(|a| a.length_sq()).sum::<f64>()).sqrt()
 }
 
-/// Settings of a bar of an element under a law; of triangles a strip of the same length and height.
+/// Settings of a bar of an element under a law; of a surface element a strip of the same length and height.
 pub fn bar(element: &str, cells: u32, law: &str) -> Vec<String> {
     let material = format!("bodies.bar.material.name=\"{law}\"");
-    if element.starts_with("tri") {
+    if ElementKind::from_name(element).is_ok_and(|kind| kind.dimension() == 2) {
         let (along, width) = (10 * cells, "length = 1, width = 0.1");
         return vec![
             format!(

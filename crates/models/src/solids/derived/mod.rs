@@ -19,6 +19,11 @@ pub mod st_venant_kirchhoff_prism6;
 pub mod st_venant_kirchhoff_pyramid5;
 pub mod st_venant_kirchhoff_tet4;
 pub mod st_venant_kirchhoff_tri3;
+pub mod stable_neo_hookean_hex8;
+pub mod stable_neo_hookean_hex8_box;
+pub mod stable_neo_hookean_prism6;
+pub mod stable_neo_hookean_pyramid5;
+pub mod stable_neo_hookean_tri3;
 
 use souple_math::{Mat3, Real, Vec3};
 use souple_mesh::{Cell, ElementKind, Mesh, QuadratureRule};
@@ -110,6 +115,11 @@ pub const DERIVED: &[Derived] = &[
     derived!(StVenantKirchhoff, Hex8, Box, st_venant_kirchhoff_hex8_box, StVenantKirchhoffHex8Box, fastest: true),
     derived!(StVenantKirchhoff, Prism6, General, st_venant_kirchhoff_prism6, StVenantKirchhoffPrism6, fastest: true),
     derived!(StVenantKirchhoff, Pyramid5, General, st_venant_kirchhoff_pyramid5, StVenantKirchhoffPyramid5, fastest: true),
+    derived!(StableNeoHookean, Tri3, General, stable_neo_hookean_tri3, StableNeoHookeanTri3, fastest: true),
+    derived!(StableNeoHookean, Hex8, General, stable_neo_hookean_hex8, StableNeoHookeanHex8, fastest: true),
+    derived!(StableNeoHookean, Hex8, Box, stable_neo_hookean_hex8_box, StableNeoHookeanHex8Box, fastest: true),
+    derived!(StableNeoHookean, Prism6, General, stable_neo_hookean_prism6, StableNeoHookeanPrism6, fastest: true),
+    derived!(StableNeoHookean, Pyramid5, General, stable_neo_hookean_pyramid5, StableNeoHookeanPyramid5, fastest: true),
 ];
 
 /// The kernel of a law on cells of one kind and map under a rule, if there is a file of it; `samples` makes the kernel whose blocks of

@@ -12,13 +12,13 @@ use crate::solids::kernel::Kernel;
 use crate::solids::{ByLaw, Kernels, Section, Shapes, SolidDescription, SolidForce};
 
 const NAME: &str = "derived";
-const ACCEPTED: &str = "linear and st_venant_kirchhoff on tri3 (in plane strain), tet4, hex8, prism6 and pyramid5, each under its usual \
-                        rule";
+const ACCEPTED: &str = "linear, st_venant_kirchhoff and stable_neo_hookean on tri3 (in plane strain), hex8, prism6 and pyramid5, the first \
+                        two on tet4 as well, each under its usual rule";
 
 pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     name: NAME,
-    summary: "kernels derived for each pair of law and element and compiled with the program: linear and st_venant_kirchhoff on \
-              first-order elements",
+    summary: "kernels derived for each pair of law and element and compiled with the program: linear, \
+              st_venant_kirchhoff and stable_neo_hookean on first-order elements",
     source: "Faure 2014, Modélisation de systèmes complexes par approche formelle, ch. 3",
     parameters: &[],
     build: |description, _| {
