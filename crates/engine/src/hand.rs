@@ -98,6 +98,8 @@ pub struct InHand {
     pub tool: Vec3,
     /// [m/s]
     pub tool_velocity: Vec3,
+    /// Of points that the tool holds, on it; zero of one that holds none [N].
+    pub felt: Vec3,
     /// Of the device on the person [N].
     pub force: Vec3,
     /// What the person has put into the device, less what came back [J].

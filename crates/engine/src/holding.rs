@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 
 use crate::force::{Configuration, Force, Scratch};
 use crate::levels::{Followers, Kinematic, Levels};
@@ -71,6 +71,8 @@ struct HeldPoint {
     displacement: Vec3,
     /// Part of its force that is felt.
     share: f64,
+    /// Onto the directions in which no pin bears that force.
+    free: Mat3,
     /// Where it is, as long as the step lasts [m].
     place: Vec3,
     /// [m/s]
@@ -95,6 +97,8 @@ pub struct HeldPoints {
     longest: f64,
     weights: Vec<Vec3>,
     is_held: Vec<bool>,
+    /// Rows that pins hold in part, ascending, with the projector onto the directions left free.
+    partly_free: Vec<(u32, Mat3)>,
 }
 
 /// The body with levels that has these rows.
@@ -130,6 +134,7 @@ impl HeldPoints {
         self.holders.clear();
         self.is_held.clear();
         self.is_held.resize(rows.positions.len(), false);
+        self.leave_pins(system);
         for (index, force) in system.forces.iter().enumerate() {
             let Some(holding) = force.holding() else { continue };
             let first = self.points.len();
@@ -147,6 +152,20 @@ impl HeldPoints {
             }
             self.holders.push((index, first..self.points.len()));
         }
+    }
+
+    /// What pins hold goes where these say, and they bear its force: such a point is held by nobody else, or felt along free directions alone.
+    fn leave_pins(&mut self, system: &System) {
+        self.partly_free.clear();
+        for constraint in &system.constraints {
+            let Some(row) = system.kinematics.point_block_row(constraint.block) else { continue };
+            if constraint.free == Mat3::ZERO {
+                self.is_held[row as usize] = true;
+            } else {
+                self.partly_free.push((row, constraint.free));
+            }
+        }
+        self.partly_free.sort_unstable_by_key(|(row, _)| *row);
     }
 
     /// What is told, on the rows of the surface: displacements; areas in touch and around, and who is held.
@@ -179,11 +198,14 @@ impl HeldPoints {
         };
         // weights of followers that extrapolate cancel, displacements need not: no mean is longer than the longest
         let mean = self.moves[at] / weight;
+        let pinned = self.partly_free.binary_search_by_key(&row, |(row, _)| *row);
+        let free = pinned.map_or(Mat3::IDENTITY, |at| self.partly_free[at].1);
         let shortened = (self.longest / mean.length()).min(1.0);
         self.points.push(HeldPoint {
             row,
             displacement: if shortened < 1.0 { mean * shortened } else { mean },
             share,
+            free,
             place: rows.positions[at],
             velocity: Vec3::ZERO,
             force: Vec3::ZERO,
@@ -232,7 +254,7 @@ impl HeldPoints {
             let Some(holding) = system.forces[*index].holding() else { continue };
             let points = &mut self.points[range.clone()];
             let memory = &mut state.memory[system.memory_range(*index)];
-            holding.feel(points.iter().map(|point| point.force * point.share).sum(), memory);
+            holding.feel(points.iter().map(|point| point.free * point.force * point.share).sum(), memory);
             let pace = holding.pace(timestep, memory);
             points.iter_mut().for_each(|point| point.velocity = point.displacement * pace);
         }
@@ -278,5 +300,6 @@ impl HeldPoints {
                     + self.weights.capacity()
                     + self.by_rate.iter().map(Vec::capacity).sum::<usize>())
             + self.is_held.capacity()
+            + size_of::<(u32, Mat3)>() * self.partly_free.capacity()
     }
 }

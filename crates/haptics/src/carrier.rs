@@ -23,7 +23,7 @@ pub struct Rest {
     pub mass: f64,
     /// A world period [s].
     pub period: f64,
-    /// Whether the hand feels the tool where it was when the period began.
+    /// Whether the hand feels the tool where it was when the period began, or what it felt then.
     pub is_held: bool,
 }
 
@@ -49,7 +49,7 @@ struct HandState {
     since_tick: f64,
     /// Of what a force says of the body when the next one takes its place, at most so far [s].
     age: f64,
-    /// Where the tool was when the period began [m].
+    /// Where the tool was when the period began [m]; of a tool that holds points, what it felt then [N].
     held: Vec3,
 }
 
@@ -239,6 +239,9 @@ impl Carrier for HandCarrier {
 
     fn advance_held(&self, felt: Vec3, told: f64, timestep: f64, memory: &mut [f64]) {
         self.tick_through(told, timestep, memory, &mut |h, memory, state| {
+            if self.begins_period(state.arm.time) {
+                state.held = felt;
+            }
             self.move_device(h, &memory[LEN..], state);
             // a device that is lost leaves its tool where it was
             if self.has_device(state) {
@@ -246,7 +249,7 @@ impl Carrier for HandCarrier {
             } else {
                 state.tool.velocity = Vec3::ZERO;
             }
-            Feeling::Force(felt)
+            Feeling::Force(if self.rest.is_held { state.held } else { felt })
         });
     }
 
@@ -264,6 +267,7 @@ impl Carrier for HandCarrier {
             device: arm.hand.place,
             tool: tool.place,
             tool_velocity: tool.velocity,
+            felt: Vec3::ZERO,
             force: port.force,
             energy: port.energy,
             jump: port.jump,

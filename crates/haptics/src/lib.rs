@@ -25,8 +25,8 @@ pub use emulated::EmulatedHand;
 pub use exchange::Latest;
 pub use pace::{Histogram, Pace};
 pub use port::{Port, PortState};
-pub use service::{DeviceNow, Served, Service, ServiceError, Station, Tick, Toll};
-pub use smoothing::{BETWEEN, Between, Smoothing};
+pub use service::{DeviceNow, Feels, Served, Service, ServiceError, Station, Tick, Told, Toll};
+pub use smoothing::{BETWEEN, Between, ForceSmoothing, Smoothing};
 
 /// Seconds between two forces that a device is given.
 pub const TICK: f64 = 1e-3;

@@ -118,6 +118,32 @@ mod tests {
         assert!(bound < 0.4 * -free.energy);
     }
 
+    /// A force of held points comes two periods of a world of 10 ms late: it gives energy, poke after poke, and under control none beyond
+    /// the error of one tick.
+    #[test]
+    fn no_energy_comes_out_of_late_forces() {
+        let poked = |passive: bool| {
+            let port = Port { coupling: STIFF, passive };
+            let depth = |tick: i32| {
+                2e-3 - 3e-3 * (1.0 - f64::cos(f64::from(tick.max(0)) * std::f64::consts::TAU / 200.0))
+            };
+            let (mut state, mut least) =
+                (PortState { place: Vec3::X * 2e-3, ..Port::start() }, f64::INFINITY);
+            for tick in 0..4000 {
+                let felt = Vec3::X * (-STIFF.stiffness * depth(tick - 20)).max(0.0);
+                port.tick_with(&mut state, Some(Vec3::X * depth(tick)), felt);
+                least = least.min(state.energy);
+            }
+            (state.energy, least)
+        };
+        let (free, _) = poked(false);
+        let (_, least) = poked(true);
+        // |F| |a| T² of a tick; |F| = 2 kN/m · 4 mm, a = 3 mm (2 π / 200 ms)²
+        let bound = 8.0 * 3e-3 * (std::f64::consts::TAU / 0.2).powi(2) * TICK * TICK;
+        assert!(least >= -bound, "{least} {bound}");
+        assert!(free < -10.0 * bound, "{free} {bound}");
+    }
+
     /// The force is never longer than the device can give.
     #[test]
     fn forces_are_limited() {

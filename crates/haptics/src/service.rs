@@ -1,7 +1,8 @@
 //! The loop at the devices: a thread of its own, a thousand times a second, that waits for nobody.
 //!
-//! It tells the world where devices are and hears from it where tools are, by numbers that lie ready ([`Latest`]). A world that
-//! is late, or has ended, leaves the hand with a spring to where the tool was last.
+//! It tells the world where devices are and hears from it where tools are, and what those feel that hold points, by numbers that
+//! lie ready ([`Latest`]). A world that is late, or has ended, leaves the hand with a spring to where the tool was last, or with a
+//! force that fades.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,14 +17,34 @@ use crate::device::Device;
 use crate::exchange::Latest;
 use crate::pace::{Histogram, Pace, hurry};
 use crate::port::{Port, PortState};
-use crate::smoothing::Smoothing;
+use crate::smoothing::{Between, ForceSmoothing, Smoothing};
+
+/// What a device feels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feels {
+    /// The spring to its tool, a thing of its own.
+    Tool,
+    /// The force of the points that its tool holds, which is where the device is.
+    Force,
+}
 
 /// A hand that is served.
 pub struct Station {
     pub name: String,
     pub device: Box<dyn Device>,
     pub port: Port,
-    pub smoothing: Smoothing,
+    pub feels: Feels,
+    pub between: Between,
+    /// Of the world [s].
+    pub period: f64,
+}
+
+/// What the world tells of a hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Told {
+    pub tool: Moving,
+    /// Of points that the tool holds, on it [N].
+    pub felt: Vec3,
 }
 
 /// One moment of one hand.
@@ -81,8 +102,8 @@ pub struct ServiceError(#[from] std::io::Error);
 struct Wire {
     /// Place, and 1 where it is there.
     device: Latest<4>,
-    /// Place, velocity, and how often it was told.
-    tool: Latest<7>,
+    /// Place, velocity, what it feels, and how often it was told.
+    tool: Latest<10>,
 }
 
 /// The loop at work.
@@ -103,7 +124,7 @@ impl Service {
     /// The system gives no thread.
     pub fn start(stations: Vec<Station>, duration: f64) -> Result<Self, ServiceError> {
         let wire = |_: &Station| {
-            Arc::new(Wire { device: Latest::new([0.0, 0.0, 0.0, 1.0]), tool: Latest::new([0.0; 7]) })
+            Arc::new(Wire { device: Latest::new([0.0, 0.0, 0.0, 1.0]), tool: Latest::new([0.0; 10]) })
         };
         let wires: Vec<Arc<Wire>> = stations.iter().map(wire).collect();
         let stop = Arc::new(AtomicBool::new(false));
@@ -121,12 +142,13 @@ impl Service {
         Some(if is_there == 1.0 { DeviceNow::At(Vec3::new(x, y, z)) } else { DeviceNow::Lost })
     }
 
-    /// The world tells where all tools are.
-    pub fn tell(&mut self, tools: impl Iterator<Item = Moving>) {
+    /// The world tells where all tools are, and what they feel.
+    pub fn tell(&mut self, all: impl Iterator<Item = Told>) {
         self.told += 1.0;
-        for (wire, Moving { place, velocity }) in self.wires.iter().zip(tools) {
-            let ([x, y, z], [u, v, w]) = (place.to_array(), velocity.to_array());
-            wire.tool.write(&[x, y, z, u, v, w, self.told]);
+        for (wire, Told { tool, felt }) in self.wires.iter().zip(all) {
+            let ([x, y, z], [u, v, w]) = (tool.place.to_array(), tool.velocity.to_array());
+            let [a, b, c] = felt.to_array();
+            wire.tool.write(&[x, y, z, u, v, w, a, b, c, self.told]);
         }
     }
 
@@ -150,6 +172,8 @@ impl Drop for Service {
 /// A station with what it remembers.
 struct Desk {
     station: Station,
+    tool: Smoothing,
+    felt: ForceSmoothing,
     port: PortState,
     device: Option<Vec3>,
     told: f64,
@@ -158,18 +182,22 @@ struct Desk {
 
 impl Desk {
     fn serve(&mut self, wire: &Wire, now: f64, ticks: u32) {
-        let Station { device, port, smoothing, .. } = &mut self.station;
+        let Station { device, port, feels, .. } = &mut self.station;
         for _ in 0..ticks.min(MOST_AT_ONCE) {
             self.device = device.exchange(self.port.force);
         }
-        if let Some([x, y, z, u, v, w, told]) = wire.tool.read()
+        if let Some([x, y, z, u, v, w, a, b, c, told]) = wire.tool.read()
             && told != self.told
         {
             self.told = told;
-            smoothing.tell(Moving { place: Vec3::new(x, y, z), velocity: Vec3::new(u, v, w) }, now);
+            self.tool.tell(Moving { place: Vec3::new(x, y, z), velocity: Vec3::new(u, v, w) }, now);
+            self.felt.tell(Vec3::new(a, b, c), now);
         }
-        let tool = smoothing.at(now);
-        port.tick(&mut self.port, self.device, tool);
+        let tool = self.tool.at(now);
+        match feels {
+            Feels::Tool => port.tick(&mut self.port, self.device, tool),
+            Feels::Force => port.tick_with(&mut self.port, self.device, self.felt.at(now)),
+        }
         let [x, y, z] = self.port.place.to_array();
         wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some()))]);
         if self.ticks.len() < self.ticks.capacity() {
@@ -181,6 +209,8 @@ impl Desk {
 
 fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: usize) -> Served {
     let desk = |station: Station| Desk {
+        tool: Smoothing::new(station.between, station.period),
+        felt: ForceSmoothing::new(station.between, station.period),
         station,
         port: Port::start(),
         device: Some(Vec3::ZERO),
@@ -215,8 +245,6 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
 mod tests {
     use super::*;
     use crate::coupling::Coupling;
-    use crate::smoothing::Between;
-
     /// A device that is pulled 10 mm away at once, and is lost after half of its ticks.
     struct Away {
         left: u32,
@@ -229,13 +257,16 @@ mod tests {
         }
     }
 
+    fn at_a_desk(port: Port, device: Box<dyn Device>, feels: Feels) -> Station {
+        Station { name: "a".to_owned(), device, port, feels, between: Between::Interpolate, period: 0.01 }
+    }
+
     /// The loop feels the spring to a tool that rests, tells where its device is, and that it is lost, while the world says
     /// nothing at all.
     #[test]
     fn the_loop_waits_for_nobody() {
         let port = Port { coupling: Coupling::DEFAULT, passive: true };
-        let smoothing = Smoothing::new(Between::Interpolate, 0.01);
-        let station = Station { name: "a".to_owned(), device: Box::new(Away { left: 40 }), port, smoothing };
+        let station = at_a_desk(port, Box::new(Away { left: 40 }), Feels::Tool);
         let service = Service::start(vec![station], 1.0).expect("a thread");
         let (mut seen, clock) = (false, Instant::now());
         while service.device(0) != Some(DeviceNow::Lost) && clock.elapsed() < Duration::from_secs(30) {
@@ -247,6 +278,53 @@ mod tests {
         // 400 N/m · 10 mm, once the first jump, which the damper feels too, is over
         let steady = served.ticks[0].iter().filter(|tick| (tick.force.x + 4.0).abs() < 1e-9).count();
         assert!(steady > 0, "{:?}", served.ticks[0].first());
+        assert_eq!(served.ports[0].force, Vec3::ZERO);
+    }
+
+    /// A device that is there and rests, until it is taken away.
+    struct Resting {
+        is_away: Arc<AtomicBool>,
+    }
+
+    impl Device for Resting {
+        fn exchange(&mut self, _: Vec3) -> Option<Vec3> {
+            (!self.is_away.load(Ordering::Relaxed)).then_some(Vec3::ZERO)
+        }
+    }
+
+    /// Calls until a condition holds.
+    fn until(mut holds: impl FnMut() -> bool) {
+        let clock = Instant::now();
+        while !holds() {
+            assert!(clock.elapsed() < Duration::from_secs(30));
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// The device feels the force that the world tells, and not where the tool is: none before the first, the whole of it while it is told,
+    /// none as soon as the device is lost.
+    #[test]
+    fn held_points_are_felt() {
+        let port = Port { coupling: Coupling::DEFAULT, passive: true };
+        let is_away = Arc::new(AtomicBool::new(false));
+        let device = Box::new(Resting { is_away: is_away.clone() });
+        let mut service =
+            Service::start(vec![at_a_desk(port, device, Feels::Force)], 30.0).expect("a thread");
+        let tool = Moving { place: Vec3::X, velocity: Vec3::ZERO };
+        let (felt, clock) = (Vec3::new(0.3, 0.0, -0.4), Instant::now());
+        until(|| {
+            service.tell(std::iter::once(Told { tool, felt }));
+            clock.elapsed() > Duration::from_millis(100)
+        });
+        is_away.store(true, Ordering::Relaxed);
+        until(|| service.device(0) == Some(DeviceNow::Lost));
+        let served = service.end().expect("an account");
+        let forces: Vec<Vec3> = served.ticks[0].iter().map(|tick| tick.force).collect();
+        assert!(
+            forces.iter().all(|force| force.cross(felt).length() < 1e-12 && force.length() < 0.5 + 1e-12)
+        );
+        // each thing that is told takes from what lacks its part of a period: e⁻¹⁰ is left after ten periods, of which the loop may sleep one
+        assert!(forces.iter().any(|force| (*force - felt).length() < 0.5 * f64::exp(-9.0)), "{forces:?}");
         assert_eq!(served.ports[0].force, Vec3::ZERO);
     }
 }

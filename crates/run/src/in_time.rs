@@ -7,7 +7,7 @@
 use std::time::{Duration, Instant};
 
 use souple_engine::{Edit, EditError, StageTimes};
-use souple_haptics::{DeviceNow, Histogram, Moving, Served, Service, ServiceError, Smoothing, Station};
+use souple_haptics::{DeviceNow, Feels, Histogram, Moving, Served, Service, ServiceError, Station, Told};
 
 use crate::{Control, Governor, Progress, Session, Stepped, Trace};
 
@@ -126,7 +126,8 @@ pub fn run_in_time(
         }
         service.tell(session.hands.iter().map(|hand| {
             let in_hand = hand.of(&session.world);
-            Moving { place: in_hand.tool, velocity: in_hand.tool_velocity }
+            let tool = Moving { place: in_hand.tool, velocity: in_hand.tool_velocity };
+            Told { tool, felt: in_hand.felt }
         }));
         session.measure(&mut |probe, time, value| traces[probe].push(time, value));
         toll.periods = step;
@@ -157,15 +158,11 @@ fn stations(session: &Session, period: f64) -> Result<Vec<Station>, TimeError> {
     }
     let station = |hand: &souple_scene::HandInfo| {
         let forces = &session.world.model().systems[hand.system].forces;
-        if forces.iter().any(|force| force.name() == hand.force && force.holding().is_some()) {
-            let why = "its tool holds points (`response = \"imposed\"`), whose force the loop of devices does not know; `souple run` and \
-                       `souple view` do, or take `response = \"penalty\"`";
-            return Err(TimeError::Device { hand: hand.name.clone(), why: why.to_owned() });
-        }
+        let is_holding = forces.iter().any(|force| force.name() == hand.force && force.holding().is_some());
+        let feels = if is_holding { Feels::Force } else { Feels::Tool };
         let device = hand.device.open();
         let device = device.map_err(|why| TimeError::Device { hand: hand.name.clone(), why })?;
-        let smoothing = Smoothing::new(hand.between, period);
-        Ok(Station { name: hand.name.clone(), device, port: hand.port, smoothing })
+        Ok(Station { name: hand.name.clone(), device, port: hand.port, feels, between: hand.between, period })
     };
     session.hands.iter().map(station).collect()
 }

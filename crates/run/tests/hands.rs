@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_haptics::{Between, Coupling, Moving, Port, Smoothing};
+use souple_haptics::{Between, Coupling, Moving, Port, Smoothing, Tick};
 use souple_math::Vec3;
 use souple_run::{Control, Options, Session, Snapshot, run, run_in_time};
 use souple_scene::{Scene, read_text};
@@ -159,9 +159,112 @@ fn wrong_holds() {
         assert!(error.contains(expected), "{setting}: {error}");
     };
     let imposed = |more: &str| format!("hands.right.touch={{ response = \"imposed\"{more} }}");
-    refused(CUBE, &imposed(", detect = \"triangles\""), "`hands.right` moves the points that it holds");
+    // the cube's stepper leads no points, also where nothing is said of what is between device and tool
+    let without = |line: &str| !line.starts_with("mass =") && !line.starts_with("coupling =");
+    let cube: String = CUBE.lines().filter(|line| without(line)).flat_map(|line| [line, "\n"]).collect();
+    refused(&cube, &imposed(", detect = \"triangles\""), "`hands.right` moves the points that it holds");
     refused(PRESS, &imposed(""), "displacements are imposed on triangles");
     refused(PRESS, &imposed(", detect = \"triangles\", friction = 0.5"), "`friction` says nothing");
     refused(PRESS, "hands.right.touch={ detect = \"triangles\", residual = 0 }", "`residual` says nothing");
     refused(PRESS, &imposed(", detect = \"triangles\", fraction = 1.5"), "1.5");
+    refused(
+        PRESS,
+        &imposed(", detect = \"triangles\", fraction = 0"),
+        "between 0 and 1, the lower end excluded",
+    );
+    refused(PRESS, &imposed(", detect = \"triangles\", residual = 0.02"), "less than the radius");
+    // nothing is between this tool and its device
+    refused(PRESS, "hands.right.mass=\"50 g\"", "`mass` says nothing to `response = \"imposed\"`");
+    refused(PRESS, "hands.right.coupling.stiffness=100", "`stiffness` says nothing");
+    refused(PRESS, "hands.right.coupling.damping=0", "`damping` says nothing");
+    refused(PRESS, "hands.right.touch={ detect = \"triangles\" }", "holds no points");
+}
+
+/// A tool that begins in a body is told of, of those that hold points as of others.
+#[test]
+fn tools_that_begin_inside_are_told() {
+    for response in ["penalty", "imposed"] {
+        let deep = "hands.right.tool.centre=[0.0515, 0.0485, 0.05]";
+        let touch = format!("hands.right.touch={{ detect = \"triangles\", response = \"{response}\" }}");
+        let mut settings = vec![SOON[0], deep, &touch];
+        if response == "penalty" {
+            settings.push("probes.jump.quantity=\"hand.jump\"");
+        }
+        let warnings = press(&settings).warnings;
+        assert!(warnings.iter().any(|warning| warning.contains("deep inside")), "{response}: {warnings:?}");
+    }
+}
+
+/// Pins bear what they hold: a tool on a surface that is pinned feels nothing.
+#[test]
+fn pins_are_not_felt() {
+    let felt = |pins: &str| {
+        let scene = press(&[SOON[0], SOON[1], pins]);
+        let options = Options { steps: Some(30), ..Options::default() };
+        let outcome = run(scene, &options, &mut |_| Control::Continue).expect("a run");
+        let last = |name: &str| {
+            let trace = outcome.traces.iter().find(|trace| trace.name == name).expect("a trace");
+            trace.last().expect("a value").to_vec()
+        };
+        (last("on_slab"), last("depth")[0])
+    };
+    let (free, _) = felt("bodies.slab.pins=[{ region = \"z_min\" }]");
+    assert!(free[2] < -1e-3, "{free:?}");
+    let (pinned, depth) = felt("bodies.slab.pins=[{ region = \"z_min\" }, { region = \"z_max\" }]");
+    assert!(depth > 1e-3 && pinned.iter().all(|part| *part == 0.0), "{pinned:?} {depth}");
+}
+
+/// Without the controller, whose part in the force is not one of the world.
+const FREELY: &str = "hands.right.passive=false";
+
+/// What devices are given and what the world told, against the clock: the greatest force told [N], all ticks, and the periods made.
+fn felt_in_time(settings: &[&str], duration: f64) -> (Session, f64, Vec<Tick>, u64) {
+    let settings: Vec<&str> = SOON.iter().chain(settings).copied().collect();
+    let mut session = Session::start(press(&settings), &Options::default()).expect("a session");
+    let in_time = run_in_time(&mut session, duration, &mut |_| Control::Continue).expect("a run in time");
+    let told = in_time.traces.iter().find(|trace| trace.name == "on_slab").expect("a trace");
+    let length = |force: &[f64]| Vec3::new(force[0], force[1], force[2]).length();
+    let periods = in_time.world.periods;
+    let peak = (0..=periods as usize).filter_map(|step| told.value(step)).map(length).fold(0.0, f64::max);
+    (session, peak, in_time.served.ticks.into_iter().next().expect("a hand"), periods)
+}
+
+/// Against the clock a person feels the force of the points held, evenly from one that is told to the next: never more than the world has told, and
+/// from moment to moment no further than between two of these in a period, or than it fades. What was led replays without a clock.
+#[test]
+fn held_points_are_felt_against_the_clock() {
+    let (session, peak, ticks, periods) = felt_in_time(&[FREELY], 1.0);
+    let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
+    assert!(peak > 1e-2 && greatest > 0.5 * peak && greatest < peak * (1.0 + 1e-9), "{greatest} of {peak}");
+    // up against a ball that comes down
+    assert!(ticks.iter().all(|tick| tick.force.z >= -0.1 * peak));
+    for pair in ticks.windows(2) {
+        let (step, time) = ((pair[1].force - pair[0].force).length(), pair[1].time - pair[0].time);
+        assert!(step <= peak * (2.0 / 10e-3 + 1.0 / 0.2) * time + 1e-12, "{step} in {time} s of {peak}");
+    }
+    let commands = session.world.log().to_vec();
+    let options = Options { steps: Some(periods), commands, ..Options::default() };
+    let settings: Vec<&str> = SOON.into_iter().chain([FREELY]).collect();
+    let outcome = run(press(&settings), &options, &mut |_| Control::Continue).expect("a replay");
+    assert_eq!(outcome.world.state(), session.world.state());
+}
+
+/// A device that is lost in the midst of pressing gives no force at once; when it is back the force grows within 200 ticks to what it is.
+#[test]
+fn held_points_are_felt_again() {
+    let lost = ["hands.right.device.lost_at=0.5", "hands.right.device.lost_for=0.2", FREELY];
+    let (_, peak, ticks, _) = felt_in_time(&lost, 1.2);
+    let felt = ticks.iter().position(|tick| tick.force != Vec3::ZERO).expect("a force");
+    let gone = ticks[felt..].iter().position(|tick| tick.force == Vec3::ZERO).expect("a loss");
+    let after = &ticks[felt + gone..];
+    let back = after.iter().position(|tick| tick.force != Vec3::ZERO).expect("a return");
+    assert!(back > 1);
+    for (count, tick) in after[back..].iter().enumerate() {
+        let share = (count as f64 + 1.0) / 200.0;
+        assert!(
+            tick.force.length() <= peak * share.min(1.0) * (1.0 + 1e-9),
+            "{count}: {:?} of {peak}",
+            tick.force
+        );
+    }
 }

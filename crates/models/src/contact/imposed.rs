@@ -84,6 +84,19 @@ struct Node {
     force: Vec3,
 }
 
+/// Moved by less than something, a triangle never comes out.
+fn is_fraction(value: f64) -> bool {
+    value > 0.0 && value <= 1.0
+}
+
+const A_FRACTION: &str = "above 0 and at most 1";
+/// The core of a part comes through a triangle that is deeper than the radius around it.
+const WITHIN_PARTS: &str = "less than the radius of every part of the tool";
+
+fn least_radius(shape: &dyn Shape) -> f64 {
+    shape.parts().iter().map(|part| part.radius).fold(f64::INFINITY, f64::min)
+}
+
 /// Numbers of a [`Node`].
 const NODE: usize = 10;
 
@@ -114,7 +127,8 @@ impl Node {
 #[derive(Debug)]
 struct Search {
     tree: AabbTree,
-    found: Vec<u32>,
+    /// Triangles near the tool, each with the number of a part.
+    found: Vec<(u32, u32)>,
     /// Of each point of the surface: how much the displacements that it is asked for count together.
     weights: Vec<f64>,
 }
@@ -171,9 +185,16 @@ impl ImposedContact {
         law: ImposedLaw,
         period: f64,
     ) -> Result<Self, LoadError> {
-        not_negative("fraction", law.fraction)?;
+        if !is_fraction(law.fraction) {
+            let field = "fraction".to_owned();
+            return Err(LoadError::Unfit { field, value: law.fraction, expected: A_FRACTION });
+        }
         not_negative("residual", law.residual)?;
         not_negative("period", period)?;
+        if law.residual >= least_radius(shape.as_ref()) {
+            let (field, value) = ("residual".to_owned(), law.residual);
+            return Err(LoadError::Unfit { field, value, expected: WITHIN_PARTS });
+        }
         if shape.parts().is_empty() {
             return Err(LoadError::Empty { field: "shape", expected: "rounded part of a tool" });
         }
@@ -301,28 +322,37 @@ impl Holding for ImposedContact {
                 self.write_node(memory, *number as usize, &Node { area: node.area + third, ..node });
             }
         }
-        for part in self.shape.parts() {
+        let parts = self.shape.parts();
+        found.clear();
+        for (number, part) in parts.iter().enumerate() {
             let ends = [part.from, part.to].map(|end| pose.to_world(end));
-            found.clear();
-            tree.overlapping(Aabb::of(ends).grown(part.radius), |triangle| found.push(triangle));
-            found.sort_unstable();
-            for triangle in found.iter() {
-                let Some(touch) = self.touch(*triangle as usize, part, &pose, at) else { continue };
-                for (k, number) in self.corners[*triangle as usize].iter().enumerate() {
-                    let number = *number as usize;
-                    let mut node = self.node(memory, number);
-                    // a mean over triangles, by what is in touch of each: one that comes to it adds no jump
-                    let weight = match self.law.felt {
-                        Felt::Area => touch.inside.shares[k],
-                        Felt::Sum => 1.0,
-                    };
-                    node.displacement += touch.displacements[k] * weight;
-                    weights[number] += weight;
-                    node.contact_area += touch.inside.shares[k];
-                    node.depth = node.depth.max(touch.depth);
-                    node.is_held = true;
-                    self.write_node(memory, number, &node);
-                }
+            tree.overlapping(Aabb::of(ends).grown(part.radius), |triangle| {
+                found.push((triangle, number as u32));
+            });
+        }
+        found.sort_unstable();
+        for of_triangle in found.chunk_by(|(a, _), (b, _)| a == b) {
+            let triangle = of_triangle[0].0 as usize;
+            let touches = of_triangle
+                .iter()
+                .filter_map(|(_, part)| self.touch(triangle, &parts[*part as usize], &pose, at));
+            // where parts overlap, as jaws do at their hinge, they touch the same area: it counts once
+            let widest = touches.reduce(|a, b| if b.inside.area > a.inside.area { b } else { a });
+            let Some(touch) = widest else { continue };
+            for (k, number) in self.corners[triangle].iter().enumerate() {
+                let number = *number as usize;
+                let mut node = self.node(memory, number);
+                // a mean over triangles, by what is in touch of each: one that comes to it adds no jump
+                let weight = match self.law.felt {
+                    Felt::Area => touch.inside.shares[k],
+                    Felt::Sum => 1.0,
+                };
+                node.displacement += touch.displacements[k] * weight;
+                weights[number] += weight;
+                node.contact_area += touch.inside.shares[k];
+                node.depth = node.depth.max(touch.depth);
+                node.is_held = true;
+                self.write_node(memory, number, &node);
             }
         }
         for (number, weight) in weights.iter().enumerate() {
@@ -450,14 +480,17 @@ impl Force for ImposedContact {
         }
         let (force, name) = (self.name.clone(), name.to_owned());
         let known = self.editable().iter().map(|editable| editable.name.to_owned()).collect();
-        let (number, most) = match name.as_str() {
-            "fraction" => (&mut self.law.fraction, 1.0),
-            "residual" => (&mut self.law.residual, f64::MAX),
+        let least = least_radius(self.shape.as_ref());
+        let (number, is_fit, expected) = match name.as_str() {
+            "fraction" => (&mut self.law.fraction, is_fraction(value), A_FRACTION.to_owned()),
+            "residual" => {
+                let expected = format!("at least 0, and less than the least radius of the tool, {least} m");
+                (&mut self.law.residual, (0.0..least).contains(&value), expected)
+            }
             _ => return Err(ParameterError::Unknown { force, name, known }),
         };
-        if !(0.0..=most).contains(&value) {
-            let expected = if most == 1.0 { "from 0 to 1" } else { "a finite number of at least 0" };
-            return Err(ParameterError::Unfit { force, name, value, expected: expected.to_owned() });
+        if !is_fit {
+            return Err(ParameterError::Unfit { force, name, value, expected });
         }
         *number = value;
         Ok(())
@@ -469,7 +502,7 @@ impl Force for ImposedContact {
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
         scratch.downcast_ref::<Search>().map_or(0, |search| {
-            search.tree.bytes() + 4 * search.found.capacity() + 8 * search.weights.capacity()
+            search.tree.bytes() + 8 * search.found.capacity() + 8 * search.weights.capacity()
         })
     }
 
@@ -500,7 +533,8 @@ impl Force for ImposedContact {
     }
 
     fn in_hand(&self, at: &Configuration) -> Option<InHand> {
-        self.leading.in_hand(self.own(at.memory))
+        let in_hand = self.leading.in_hand(self.own(at.memory))?;
+        Some(InHand { felt: Self::force(at.memory), ..in_hand })
     }
 
     fn obstacle(&self) -> Option<Obstacle> {

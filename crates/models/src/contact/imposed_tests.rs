@@ -6,7 +6,7 @@ use souple_engine::{Configuration, Felt, Force, Holding, Told};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 
-use super::shape::Sphere;
+use super::shape::{Capsule, Jaws, Sphere};
 use super::{ContactLaw, Displacing, ImposedContact, ImposedLaw, Shape, ToolContact, ToolSurface};
 use crate::loads::{FormulaVector, RigidMotion};
 
@@ -39,11 +39,14 @@ fn led(motion: &str) -> RigidMotion {
 
 impl Setting {
     fn new(motion: &str, law: ImposedLaw) -> Self {
+        Self::of(Box::new(ball()), motion, law)
+    }
+
+    fn of(shape: Box<dyn Shape>, motion: &str, law: ImposedLaw) -> Self {
         let surface = triangles();
         let positions = surface.points.clone();
         let touched = ToolSurface { surface, rows: (0..6).collect() };
-        let contact =
-            ImposedContact::new("tool", touched, Box::new(ball()), led(motion), law, PERIOD).unwrap();
+        let contact = ImposedContact::new("tool", touched, shape, led(motion), law, PERIOD).unwrap();
         let mut memory = vec![0.0; contact.memory_len()];
         contact.initial_memory(&mut memory);
         Self { contact, positions, memory }
@@ -198,4 +201,40 @@ fn penalties_weigh_areas_or_alike() {
     assert!(small < 0.0 && (large / small - 9.0).abs() < 1e-12, "{large} {small}");
     let [large, small] = places.map(|place| force(place, true));
     assert!(small < 0.0 && large == small, "{large} {small}");
+}
+
+/// Jaws that are shut touch what one of their rods does, once.
+#[test]
+fn areas_count_once() {
+    let (from, length, radius) = (Vec3::new(0.8, 0.8, 0.45), 0.5, 0.5);
+    let rod = Capsule { from, to: from + Vec3::X * length, radius };
+    let jaws = Jaws::new(from, [Vec3::X, Vec3::Z], length, radius, 0.0);
+    let [one, both] = [Box::new(rod) as Box<dyn Shape>, Box::new(jaws)]
+        .map(|shape| Setting::of(shape, "[0, 0, 0]", LAW).look());
+    assert!(one[0].contact_area > 0.0);
+    for (one, both) in one.iter().zip(&both) {
+        assert!((one.contact_area - both.contact_area).abs() < 1e-12, "{one:?} {both:?}");
+        assert!((one.displacement - both.displacement).length() < 1e-12);
+    }
+}
+
+/// What cannot be is refused at the start and while running: a triangle deeper than the radius, and one that is never moved.
+#[test]
+fn laws_fit_the_tool() {
+    let new = |law| {
+        let surface = triangles();
+        let touched = ToolSurface { surface, rows: (0..6).collect() };
+        ImposedContact::new("tool", touched, Box::new(ball()), led("[0, 0, 0]"), law, PERIOD)
+    };
+    assert!(
+        new(ImposedLaw { residual: 2.0, ..LAW }).is_err()
+            && new(ImposedLaw { fraction: 0.0, ..LAW }).is_err()
+    );
+    let mut contact = new(ImposedLaw { residual: 1.9, ..LAW }).unwrap();
+    let refused = |contact: &mut ImposedContact, name: &str, value: f64| {
+        contact.set_parameter(name, value).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    assert!(refused(&mut contact, "residual", 2.0).contains("the least radius of the tool, 2 m"));
+    assert!(refused(&mut contact, "fraction", 0.0).contains("above 0 and at most 1"));
+    assert_eq!(refused(&mut contact, "fraction", 1.0), "");
 }

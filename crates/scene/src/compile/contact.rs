@@ -119,6 +119,10 @@ pub(super) fn modulus_of(
     if body.spec.network.is_none() {
         return Some(modulus_behind(body, touching.shares()));
     }
+    if contact.stiffness.is_none() && contact.detect == Detect::Triangles {
+        // there are none, which is said where the tool asks for them
+        return Some(0.0);
+    }
     if contact.stiffness.is_none() {
         let message = format!("masses of network `{}` have no material behind them", contact.body);
         draft.log.add(Code::MissingKey, &contact.site, message, "stiffness = \"… N/m\" of each mass");

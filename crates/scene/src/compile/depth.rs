@@ -20,7 +20,8 @@ struct Deepest {
 /// Warns of every contact that starts with points deep inside.
 pub fn warn(draft: &mut Draft) {
     let mut warnings = Vec::new();
-    for contact in &draft.spec.contacts {
+    let of_hands = draft.spec.hands.iter().map(|hand| &hand.touch);
+    for contact in draft.spec.contacts.iter().chain(of_hands) {
         let Some(body) = draft.body(&contact.body) else { continue };
         let limit = DEEP * mean_edge(&body.mesh.boundary_surface());
         let Some(found) = deepest(draft, body.system, &contact.name, contact.thickness + limit) else {
@@ -58,6 +59,10 @@ fn deepest(draft: &Draft, system: usize, contact: &str, limit: f64) -> Option<De
     let (mut state, mut ws) = (draft.state.systems[system].clone(), model.new_workspace());
     model.place_rows(&state.q, &state.v, 0.0, &mut ws.rows);
     model.update_pairs(&mut ws, &mut state, &around);
+    if model.holds() {
+        // what a tool would hold is known once it has looked
+        model.look(&mut ws, &mut state, &around);
+    }
     let mut found: Option<Deepest> = None;
     let mut visit = |point: &ContactPoint| {
         if point.penetration > limit {

@@ -194,6 +194,14 @@ impl ProbeInfo {
             }
             (Subject::Hand(quantity), _) => {
                 let name = probe.hand.as_deref()?;
+                let hand = draft.spec.hands.iter().find(|hand| hand.name == name)?;
+                if quantity == HandQuantity::ToolJump && hand.touch.imposed.is_none() {
+                    let message =
+                        format!("the tool of hand `{name}` holds no points, whose force could jump");
+                    let expected = "a hand whose `touch` has `response = \"imposed\"`, or `hand.jump`";
+                    draft.log.add(Code::Conflict, &probe.site, message, expected);
+                    return None;
+                }
                 Target::Hand(quantity, draft.hands.iter().find(|hand| hand.name == name)?.clone())
             }
             (Subject::Bone(quantity), _) => Target::Bone(quantity, bone_part(probe, draft)?),

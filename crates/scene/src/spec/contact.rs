@@ -69,7 +69,7 @@ const RESPONSES: [&str; 2] = ["penalty", "imposed"];
 pub(super) const FRACTION: Key = Key::number(
     "fraction",
     "",
-    Range::closed(0.0, 1.0),
+    Range { low: 0.0, high: 1.0, low_included: false, high_included: true },
     "of the way out that imposed displacements go in a period",
 )
 .or(Value::Number(1.0));
@@ -101,18 +101,32 @@ pub struct Imposed {
     pub displacing: Displacing,
 }
 
+/// Refuses keys that say nothing to a response, and do to the one `instead`.
+pub(super) fn refuse_idle(reader: &Reader, keys: &[&'static str], [response, instead]: [&str; 2]) {
+    for key in reader.written(keys) {
+        let message = format!("`{key}` says nothing to `response = \"{response}\"`");
+        let expected = format!("`response = \"{instead}\"`, or no `{key}`");
+        reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+    }
+}
+
 impl Imposed {
+    /// The mass of a tool, and the spring and damper to its device: a tool that holds points has neither.
+    pub(super) fn refuse_coupling(hand: &Reader, coupling: Option<&Reader>) {
+        let responses = [RESPONSES[1], RESPONSES[0]];
+        refuse_idle(hand, &["mass"], responses);
+        if let Some(coupling) = coupling {
+            refuse_idle(coupling, &["stiffness", "damping"], responses);
+        }
+    }
+
     /// `None` of a penalty; keys without effect are refused.
     pub(super) fn read(reader: &Reader) -> Option<Self> {
         let response = reader.choice("response");
         let is_imposed = response == RESPONSES[1];
         let (idle, instead): (&[&'static str], &str) =
             if is_imposed { (&OF_PENALTY, RESPONSES[0]) } else { (&OF_IMPOSED, RESPONSES[1]) };
-        for key in reader.written(idle) {
-            let message = format!("`{key}` says nothing to `response = \"{response}\"`");
-            let expected = format!("`response = \"{instead}\"`, or no `{key}`");
-            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
-        }
+        refuse_idle(reader, idle, [response, instead]);
         if is_imposed && Detect::named(reader.choice("detect")) == Detect::Points {
             let message = "displacements are imposed on triangles";
             reader.log().add(Code::Conflict, &reader.site(), message, "`detect = \"triangles\"`");

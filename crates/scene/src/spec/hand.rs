@@ -91,7 +91,7 @@ pub(crate) static HAND: Keys = Keys::new(
         Key::new(
             "between",
             Shape::Choice(&BETWEEN),
-            "what the tool does for the hand between two periods of the world, against the clock; `hold` acts in every run",
+            "what the tool, or the force of points that it holds, does for the hand between two periods of the world, against the clock; `hold` acts in every run",
         )
         .or(Value::Text(BETWEEN[0])),
     ],
@@ -122,7 +122,12 @@ impl HandSpec {
         let touch = reader.table("touch");
         let maybe = |key: &str| touch.as_ref().and_then(|touch| touch.maybe_number(key));
         let number = |key: &str| maybe(key).unwrap_or(0.0);
-        let coupling = reader.table("coupling").map_or(Coupling::DEFAULT, |coupling| Coupling {
+        let imposed = touch.as_ref().and_then(Imposed::read);
+        let coupled = reader.table("coupling");
+        if imposed.is_some() {
+            Imposed::refuse_coupling(reader, coupled.as_ref());
+        }
+        let coupling = coupled.map_or(Coupling::DEFAULT, |coupling| Coupling {
             stiffness: coupling.number("stiffness"),
             damping: coupling.number("damping"),
             limit: coupling.number("limit"),
@@ -144,7 +149,7 @@ impl HandSpec {
                 damping: number("damping"),
                 tangential_stiffness: maybe("tangential_stiffness"),
                 thickness: number("thickness"),
-                imposed: touch.as_ref().and_then(Imposed::read),
+                imposed,
                 site: reader.site(),
             },
             port: Port { coupling, passive: reader.boolean("passive") },

@@ -180,6 +180,19 @@ pub(super) const CASES: &[Case] = &[
         ..HELD
     },
     Case {
+        id: "hand_felt_at_once",
+        capabilities: &["DEB-46"],
+        what: "greatest change of the force on a person from one millisecond to the next while the ball goes 8.4 mm in a fifth of a second, where a person feels all through a period what the points held bore when it began",
+        settings: &["hands.right.between=\"hold\"", "hands.right.motion.times=[0, 0.4, 0.6, 0.8, 3.6, 5.1]"],
+        reading: Reading::last("step").after(80),
+        // of 0.385 N
+        reference: 0.05 * 0.385,
+        tolerance: Tolerance::Above,
+        source: "V-43: above a twentieth of the greatest force; in the mutation the force is new every millisecond, and stays below it",
+        mutation: "hands.right.between=\"interpolate\"",
+        ..HELD
+    },
+    Case {
         id: "held_press_depth",
         capabilities: &["DEB-45"],
         what: "how deep the slab is in the ball that presses it at 3 mm/s, at most: the residual and what the ball goes in two periods",
