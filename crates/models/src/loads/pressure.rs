@@ -14,8 +14,8 @@ use souple_solve::BlockMatrix;
 
 use super::{LoadError, finite};
 
-/// The most nodes of a face.
-const NODES: usize = 8;
+/// The most nodes of a face: a quadrilateral with corners, middles of sides and its centre.
+const NODES: usize = 9;
 
 /// A face that is pressed: a triangle or quadrilateral of rows, linear or quadratic, counterclockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl PressedFace {
         Some(Self { rows: nodes, kind })
     }
 
-    /// Nodes: corners in order, then middles of sides.
+    /// Nodes: corners in order, then middles of sides, then the centre.
     pub fn rows(&self) -> &[u32] {
         &self.rows[..self.kind.node_count()]
     }

@@ -227,6 +227,24 @@ fn pressure_works_by_volume() {
     assert!((work / expected - 1.0).abs() < 1e-14, "{work} {expected}");
 }
 
+/// Surface elements of every kind are faces, and a flat one bears its area times the pressure.
+#[test]
+fn faces_of_every_kind_are_pressed() {
+    for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() == 2) {
+        let positions = kind.regular();
+        let rows: Vec<u32> = (0..).take(positions.len()).collect();
+        let face = PressedFace::new(kind, &rows).expect(kind.name());
+        let pressure = Pressure::new("pressure", vec![face], Formula::constant(4.0)).unwrap();
+        let setting = Setting::new(&pressure, positions.clone(), vec![Vec3::ZERO; positions.len()]);
+        let net: Vec3 = setting.force(&pressure).into_iter().sum();
+        let corners = &positions[..kind.corner_count()];
+        let area = 0.5
+            * (0..corners.len()).map(|at| corners[at].cross(corners[(at + 1) % corners.len()])).sum::<Vec3>();
+        // the setting acts with a load of 0.75
+        assert!((net + area * (0.75 * 4.0)).length() < 1e-14 * area.length(), "{}: {net:?}", kind.name());
+    }
+}
+
 /// The weight is the sum of all entries of the mass matrix times `g`, consistent or lumped.
 #[test]
 fn total_weight() {
