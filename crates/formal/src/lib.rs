@@ -20,6 +20,7 @@ mod expression;
 mod formula;
 mod function;
 pub mod graph;
+mod hashing;
 mod interval;
 pub mod law;
 mod lexer;

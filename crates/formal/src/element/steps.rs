@@ -10,7 +10,8 @@ use std::collections::HashMap;
 
 use super::derive::{Placing, SampleStress, Symbols, Term, WEIGHT, nodal_forces, terms};
 use super::{Cut, ElementData, Fragment, RestMap};
-use crate::graph::{Expr, Graph, OWN, Operations, Shape};
+use crate::graph::{Expr, Graph, OWN, Operations, Shape, Substitution};
+use crate::hashing::Map;
 use crate::law::EnergyLaw;
 
 /// Steps of an element under one law.
@@ -68,13 +69,15 @@ struct Stepping<'a> {
     law: &'a EnergyLaw,
     symbols: Symbols,
     terms: Vec<Term>,
+    /// `X_ξ⁻¹` and `det X_ξ`, by sample.
+    rest_maps: Vec<(Vec<Expr>, Expr)>,
 }
 
 pub(super) fn steps(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Steps {
     let mut graph = law.graph.clone();
     let symbols = Symbols::new(&mut graph, element, law);
     let terms = terms(&mut graph, law, cut);
-    let mut stepping = Stepping { graph, element, law, symbols, terms };
+    let mut stepping = Stepping { graph, element, law, symbols, terms, rest_maps: Vec::new() };
     let counts = (stepping.terms.len(), element.samples.len());
     let of_forces = Fragment::of_forces(cut, counts.0, counts.1);
     let of_differentials = Fragment::of_differentials(cut, counts, (element.node_count, element.dimension));
@@ -101,12 +104,12 @@ impl Steps {
     /// Energy, forces and differential hold much the same constants: each has one place.
     pub fn constant_places(&self) -> ConstantPlaces {
         let mut graph = self.graph.clone();
-        let mut place_of: HashMap<Expr, usize> = HashMap::new();
+        let mut place_of: Map<Expr, usize> = Map::default();
         let mut of_step = |step: &Step| {
-            let mut whole: HashMap<Expr, Expr> = HashMap::new();
+            let mut whole = Substitution::default();
             let of_constant = |(symbol, definition): &(Expr, Expr)| {
-                let definition = graph.substitute(*definition, &whole);
-                whole.insert(*symbol, definition);
+                let definition = graph.substituted(*definition, &mut whole);
+                whole.replace(*symbol, definition, false);
                 let next = place_of.len();
                 *place_of.entry(definition).or_insert(next)
             };
@@ -195,7 +198,10 @@ impl Stepping<'_> {
         let Symbols { rest, displacements, directions, .. } = &self.symbols;
         let (element, law) = (self.element, self.law);
         let mut at = Placing { graph: &mut self.graph, element, law, sample, rest, directions };
-        let (inverse, determinant) = at.rest_map();
+        if self.rest_maps.len() <= sample {
+            self.rest_maps.push(at.rest_map());
+        }
+        let (inverse, determinant) = self.rest_maps[sample].clone();
         let mut rates = vec![(tensors.deformation, at.reference_gradient(displacements))];
         if quantity == Quantity::Differential {
             rates.push((tensors.variation, at.reference_gradient(varied)));

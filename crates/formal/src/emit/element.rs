@@ -1,10 +1,8 @@
 //! Code of an element under a law: constants once, then forces and their differential at every step.
 
-use std::collections::HashMap;
-
 use super::{Rust, Style, Wgsl, symbol, write};
 use crate::element::Derived;
-use crate::graph::{Expr, Grouped};
+use crate::graph::{Expr, Grouped, Substitution};
 
 /// Which language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,11 +63,11 @@ impl Derived {
         let roots: Vec<Expr> = forces.into_iter().chain(differentials).collect();
         let Grouped { constants, varying } = self.graph.group_constants(&roots, &variables);
         // constants that hold earlier ones are written out: the function that makes them has no array of them yet
-        let mut whole: HashMap<Expr, Expr> = HashMap::new();
+        let mut whole = Substitution::default();
         let mut definitions = Vec::with_capacity(constants.len());
         for (symbol, definition) in &constants {
-            let definition = self.graph.substitute(*definition, &whole);
-            whole.insert(*symbol, definition);
+            let definition = self.graph.substituted(*definition, &mut whole);
+            whole.replace(*symbol, definition, false);
             definitions.push(definition);
         }
         let dimension = self.symbols.displacements[0].len();

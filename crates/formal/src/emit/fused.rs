@@ -11,7 +11,7 @@ use std::fmt::Write;
 use super::kernel::{NoKernel, Writer, finished, needed, packing};
 use super::{Text, write};
 use crate::element::{Cut, ElementData, RestMap, WEIGHT, terms};
-use crate::graph::{Expr, Graph, Node, Shape};
+use crate::graph::{Expr, Graph, Node, Shape, Substitution};
 use crate::law::{EnergyLaw, LawParameter};
 use crate::tape::lower::{Request, lower};
 
@@ -258,11 +258,11 @@ impl Weighted {
         let roots = [term.energy, term.stress, term.differential];
         let grouped = graph.group_constants(&roots, &[deformation, variation]);
         let grouped = graph.without_multiples(grouped);
-        let mut known = HashMap::new();
+        let mut known = Substitution::default();
         let mut whole = Vec::with_capacity(grouped.constants.len());
         for (symbol, definition) in &grouped.constants {
-            let definition = graph.substitute(*definition, &known);
-            known.insert(*symbol, definition);
+            let definition = graph.substituted(*definition, &mut known);
+            known.replace(*symbol, definition, false);
             whole.push(definition);
         }
         let diagonal = multiples_of_one(&mut graph, &grouped.varying);

@@ -6,7 +6,8 @@
 
 use std::collections::HashMap;
 
-use super::{Expr, Graph, Node, Shape};
+use super::{Expr, Graph, Node, Shape, Substitution};
+use crate::hashing::Map;
 
 /// Expressions split into grouped constants and what varies.
 #[derive(Clone, Debug)]
@@ -21,7 +22,7 @@ struct Extraction<'a> {
     graph: &'a mut Graph,
     varies: Vec<bool>,
     constants: Vec<(Expr, Expr)>,
-    symbols: HashMap<Expr, Expr>,
+    symbols: Map<Expr, Expr>,
 }
 
 impl Graph {
@@ -30,8 +31,8 @@ impl Graph {
         let varies = self.depends(roots, variables);
         let reachable = self.reachable(roots);
         let mut extraction =
-            Extraction { graph: self, varies, constants: Vec::new(), symbols: HashMap::new() };
-        let mut made: HashMap<Expr, Expr> = HashMap::new();
+            Extraction { graph: self, varies, constants: Vec::new(), symbols: Map::default() };
+        let mut made: Map<Expr, Expr> = Map::default();
         for expr in reachable {
             if extraction.varies[expr.index()] {
                 let new = extraction.rewrite(expr, &made);
@@ -50,19 +51,21 @@ impl Graph {
 
     /// The same with one constant for all that differ by a number, which stays in the code: twice a modulus is no constant of its own.
     pub(crate) fn without_multiples(&mut self, grouped: Grouped) -> Grouped {
-        let (mut whole, mut replaced) = (HashMap::new(), HashMap::new());
+        let (mut whole, mut replaced) = (Substitution::default(), Vec::new());
         let mut kept: Vec<(Expr, Expr)> = Vec::new();
+        let mut symbol_of: Map<Expr, Expr> = Map::default();
         for (symbol, definition) in grouped.constants {
-            let definition = self.substitute(definition, &whole);
-            whole.insert(symbol, definition);
+            let definition = self.substituted(definition, &mut whole);
+            whole.replace(symbol, definition, false);
             let (number, rest) = self.without_number(definition);
-            let known = kept.iter().find(|(_, known)| *known == rest).map(|(symbol, _)| *symbol);
-            if known.is_none() {
+            let known = *symbol_of.entry(rest).or_insert_with(|| {
                 kept.push((symbol, rest));
-            }
-            replaced.insert(symbol, self.times_number(number, known.unwrap_or(symbol)));
+                symbol
+            });
+            replaced.push((symbol, self.times_number(number, known)));
         }
-        let varying = grouped.varying.iter().map(|expr| self.substitute(*expr, &replaced)).collect();
+        let mut replaced = Substitution::new(replaced);
+        let varying = grouped.varying.iter().map(|expr| self.substituted(*expr, &mut replaced)).collect();
         let constants = self.nest(kept);
         Grouped { constants, varying }
     }
@@ -78,12 +81,12 @@ impl Graph {
 
     /// Writes constants with the earlier ones they contain.
     fn nest(&mut self, constants: Vec<(Expr, Expr)>) -> Vec<(Expr, Expr)> {
-        let mut symbols: HashMap<Expr, Expr> = HashMap::new();
+        let mut symbols = Substitution::default();
         let mut nested = Vec::with_capacity(constants.len());
         for (symbol, expr) in constants {
-            let definition = if symbols.is_empty() { expr } else { self.substitute(expr, &symbols) };
-            nested.push((symbol, definition));
-            symbols.insert(expr, symbol);
+            let is_held = symbols.has_met(expr);
+            nested.push((symbol, self.substituted(expr, &mut symbols)));
+            symbols.replace(expr, symbol, is_held);
         }
         nested
     }
@@ -139,7 +142,7 @@ impl Extraction<'_> {
         Some(known)
     }
 
-    fn rewrite(&mut self, expr: Expr, made: &HashMap<Expr, Expr>) -> Expr {
+    fn rewrite(&mut self, expr: Expr, made: &Map<Expr, Expr>) -> Expr {
         let node = self.graph.node(expr).clone();
         let constants: Vec<Expr> = node.operands().filter(|operand| !self.varies[operand.index()]).collect();
         let plain = |graph: &Graph, operand: &Expr| graph.value(*operand).is_some();
@@ -169,7 +172,7 @@ impl Extraction<'_> {
                 self.graph.product(&product)
             }
             _ => {
-                let mut known: HashMap<Expr, Expr> =
+                let mut known: Map<Expr, Expr> =
                     node.operands().filter_map(|key| Some((key, *made.get(&key)?))).collect();
                 for operand in grouped.into_iter().chain(numbers) {
                     let constant = self.constant(operand);

@@ -1,9 +1,8 @@
 //! How much work expressions are.
 
-use std::collections::HashMap;
-
 use super::{Expr, Graph, Node};
 use crate::Function;
+use crate::hashing::Map;
 
 /// Operations of one evaluation in which every different expression is computed once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,7 +56,7 @@ impl Graph {
     /// would be. Expressions for which `known` holds have a name and count as one.
     pub fn operands_written_out(&self, roots: &[Expr], known: impl Fn(Expr) -> bool) -> f64 {
         // the length of a text that shares nothing grows exponentially: more than any whole number
-        let mut lengths: HashMap<Expr, f64> = HashMap::new();
+        let mut lengths: Map<Expr, f64> = Map::default();
         for expr in self.reachable(roots) {
             let inside: f64 = self.node(expr).operands().map(|operand| lengths[&operand]).sum();
             lengths.insert(expr, if known(expr) || inside == 0.0 { 1.0 } else { inside });

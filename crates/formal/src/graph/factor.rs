@@ -3,14 +3,13 @@
 //! Derivatives of functions of `C = FᵀF` have `F` and `δF` on the left of every addend: `a F + F A + F B` is `F (a I + A + B)`, one
 //! product of matrices in the place of two, and numbers on a diagonal in the place of a scaled matrix.
 
-use std::collections::HashMap;
-
 use super::{Expr, Graph, Node, Shape};
+use crate::hashing::Map;
 
 impl Graph {
     /// Expressions with common left factors of matrices taken out of sums, each where that takes fewer operations.
     pub fn factored(&mut self, roots: &[Expr]) -> Vec<Expr> {
-        let mut made: HashMap<Expr, Expr> = HashMap::new();
+        let mut made: Map<Expr, Expr> = Map::default();
         for expr in self.reachable(roots) {
             let rebuilt = self.rebuild(expr, &|operand| made[&operand]);
             let factored = match self.node(rebuilt) {

@@ -16,9 +16,8 @@ mod factor;
 mod share;
 mod simplify;
 mod spectral;
+mod substitute;
 mod tensor;
-
-use std::collections::HashMap;
 
 pub use components::WithoutFormula;
 pub use constants::Grouped;
@@ -26,8 +25,10 @@ pub use count::Operations;
 pub(crate) use evaluate::EQUAL_STRETCHES;
 pub use evaluate::{Evaluation, Tensor};
 pub(crate) use spectral::STRETCHES;
+pub(crate) use substitute::Substitution;
 
 use crate::Function;
+use crate::hashing::Map;
 
 /// An expression of a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -193,11 +194,11 @@ impl Symbol {
 pub struct Graph {
     nodes: Vec<Node>,
     shapes: Vec<Shape>,
-    known: HashMap<Node, Expr>,
+    known: Map<Node, Expr>,
     symbols: Vec<Symbol>,
     /// Transposes, determinants and cofactors of products made so far: a factor that stands in a product many times is gone
     /// into once.
-    of_tensors: HashMap<(OfTensor, Expr), Expr>,
+    of_tensors: Map<(OfTensor, Expr), Expr>,
     /// Operands that new expressions may still have; `None` is without bound.
     allowance: Option<usize>,
 }
@@ -330,18 +331,6 @@ impl Graph {
             }
         }
         depends
-    }
-
-    /// `expr` with expressions replaced, simplified again.
-    pub fn substitute(&mut self, expr: Expr, replacements: &HashMap<Expr, Expr>) -> Expr {
-        let mut made = replacements.clone();
-        for old in self.reachable(&[expr]) {
-            if !made.contains_key(&old) {
-                let new = self.rebuild(old, &|operand| made[&operand]);
-                made.insert(old, new);
-            }
-        }
-        made[&expr]
     }
 
     /// The same operation on other operands.

@@ -5,9 +5,11 @@
 //! sums in sums and products in products: it is meant to be evaluated, and simplifying it again would flatten it.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use super::{Expr, Graph, Node, Shape};
+use crate::hashing::Map;
 
 /// What a list is of.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -33,42 +35,6 @@ struct List {
     parts: Vec<(bool, Part)>,
 }
 
-/// The pairs of all lists, and those that several have, those that most have first.
-#[derive(Default)]
-struct Counts {
-    lists_of: HashMap<Pair, Vec<usize>>,
-    by_count: BTreeSet<(Reverse<usize>, Pair)>,
-}
-
-impl Counts {
-    fn change(&mut self, pair: Pair, list: usize, is_there: bool) {
-        let lists = self.lists_of.entry(pair).or_default();
-        if lists.len() > 1 {
-            self.by_count.remove(&(Reverse(lists.len()), pair));
-        }
-        if is_there {
-            lists.push(list);
-        } else {
-            lists.retain(|other| *other != list);
-        }
-        if lists.len() > 1 {
-            self.by_count.insert((Reverse(lists.len()), pair));
-        }
-    }
-
-    /// The pair that most lists have, the first of several, and which lists.
-    fn most_frequent(&self) -> Option<(Pair, Vec<usize>)> {
-        let (_, pair) = *self.by_count.first()?;
-        let mut lists = self.lists_of[&pair].clone();
-        lists.sort_unstable();
-        Some((pair, lists))
-    }
-}
-
-fn pair_of((a_sign, a): (bool, Part), (b_sign, b): (bool, Part)) -> Pair {
-    (a.min(b), a.max(b), a_sign != b_sign)
-}
-
 impl Graph {
     /// Expressions of numbers in which what sums or products have in common is one expression.
     pub fn shared(&mut self, roots: &[Expr]) -> Vec<Expr> {
@@ -79,7 +45,7 @@ impl Graph {
     fn shared_of(&mut self, kind: Kind, roots: &[Expr]) -> Vec<Expr> {
         let reachable = self.reachable(roots);
         let mut lists: Vec<List> = Vec::new();
-        let mut list_of: HashMap<Expr, usize> = HashMap::new();
+        let mut list_of: Map<Expr, usize> = Map::default();
         for expr in &reachable {
             if let Some(list) = self.list_of(kind, *expr) {
                 list_of.insert(*expr, lists.len());
@@ -87,7 +53,7 @@ impl Graph {
             }
         }
         let pairs = take_out(&mut lists);
-        let mut made: HashMap<Expr, Expr> = HashMap::new();
+        let mut made: Map<Expr, Expr> = Map::default();
         let mut made_pairs: Vec<Option<Expr>> = vec![None; pairs.len()];
         for expr in reachable {
             let new = match list_of.get(&expr) {
@@ -153,7 +119,7 @@ impl Graph {
         kind: Kind,
         part: Part,
         pairs: &[Pair],
-        made: &HashMap<Expr, Expr>,
+        made: &Map<Expr, Expr>,
         made_pairs: &mut [Option<Expr>],
     ) -> Expr {
         match part {
@@ -210,45 +176,166 @@ impl Graph {
 
 /// Takes pairs out of lists until none stands in several; gives what they are of, the first of each with a plus.
 fn take_out(lists: &mut [List]) -> Vec<Pair> {
-    let mut counts = Counts::default();
-    let mut users: HashMap<Part, usize> = HashMap::new();
-    lists.iter().flat_map(|list| &list.parts).for_each(|(_, part)| *users.entry(*part).or_default() += 1);
+    let mut written: Vec<Part> = lists.iter().flat_map(|list| &list.parts).map(|(_, part)| *part).collect();
+    written.sort_unstable();
     // what one list has alone is in no pair that several have; pairs are as many as the square of the others
-    let is_shared = |(_, part): &(bool, Part)| users.get(part).is_none_or(|count| *count > 1);
-    let mut shared: Vec<Vec<(bool, Part)>> =
-        lists.iter().map(|list| list.parts.iter().copied().filter(is_shared).collect()).collect();
-    for (index, shared) in shared.iter().enumerate() {
-        for (position, a) in shared.iter().enumerate() {
-            shared[..position].iter().for_each(|b| counts.change(pair_of(*a, *b), index, true));
-        }
-    }
+    let shared: Vec<Part> =
+        written.chunk_by(|a, b| a == b).filter(|equal| equal.len() > 1).map(|equal| equal[0]).collect();
+    let mut pairing =
+        Pairing { lists: lists.iter().map(|list| numbered(list, &shared)).collect(), ..Pairing::default() };
+    pairing.find_first(shared.len());
     let mut pairs = Vec::new();
-    while let Some((pair, users)) = counts.most_frequent() {
-        let new = Part::Pair(pairs.len());
-        pairs.push(pair);
-        let is_taken = |(_, part): &(bool, Part)| *part == pair.0 || *part == pair.1;
-        for user in users {
-            let (parts, shared) = (&mut lists[user].parts, &mut shared[user]);
-            let taken: Vec<usize> = (0..shared.len()).filter(|place| is_taken(&shared[*place])).collect();
-            for &place in &taken {
-                let others = (0..shared.len()).filter(|other| *other != place);
-                // a pair of two that are taken is one pair
-                for other in others.filter(|other| *other < place || !taken.contains(other)) {
-                    let (later, earlier) = (shared[place.max(other)], shared[place.min(other)]);
-                    counts.change(pair_of(later, earlier), user, false);
-                }
-            }
-            let first = shared.iter().find(|(_, part)| *part == pair.0);
-            // pairs are of parts that are there
-            let sign = first.is_some_and(|(sign, _)| *sign);
-            parts.retain(|part| !is_taken(part));
-            shared.retain(|part| !is_taken(part));
-            for other in shared.iter() {
-                counts.change(pair_of(*other, (sign, new)), user, true);
-            }
-            parts.push((sign, new));
-            shared.push((sign, new));
+    let part_of = |number: u32| match shared.get(number as usize) {
+        Some(part) => *part,
+        None => Part::Pair(number as usize - shared.len()),
+    };
+    while let Some(([a, b], differ, users)) = pairing.most_frequent() {
+        let new = (shared.len() + pairs.len()) as u32;
+        let pair = (part_of(a), part_of(b), differ);
+        for user in &users {
+            let sign = pairing.merge(*user, [a, b], new);
+            let parts = &mut lists[*user as usize].parts;
+            parts.retain(|(_, part)| *part != pair.0 && *part != pair.1);
+            parts.push((sign, Part::Pair(pairs.len())));
         }
+        pairing.find_with(new, &users);
+        pairs.push(pair);
     }
     pairs
+}
+
+/// The numbers of a list's shared parts, ascending, with their signs.
+fn numbered(list: &List, shared: &[Part]) -> Vec<(u32, bool)> {
+    let number = |(sign, part): &(bool, Part)| Some((shared.binary_search(part).ok()? as u32, *sign));
+    let mut numbers: Vec<(u32, bool)> = list.parts.iter().filter_map(number).collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// A pair that several lists had when it was found. It gets no more of them: a pair is found when the later of its parts is made.
+struct Candidate {
+    parts: [u32; 2],
+    differ: bool,
+    /// Among [`Pairing::users`]; those that have it no more are left out when it is looked at.
+    users: Range<usize>,
+}
+
+/// The pairs of all lists by the numbers of their parts, which ascend as parts do.
+#[derive(Default)]
+struct Pairing {
+    /// Ascending by part.
+    lists: Vec<Vec<(u32, bool)>>,
+    candidates: Vec<Candidate>,
+    /// Lists of candidates, one after another.
+    users: Vec<u32>,
+    /// How many lists had a candidate when it was last looked at; most first, then the first pair.
+    queue: BinaryHeap<(usize, Reverse<([u32; 2], bool)>, usize)>,
+    /// By number of a part and whether signs differ: how many lists have it beside the part in question, and of which candidate that is.
+    counts: Vec<[(u32, usize); 2]>,
+}
+
+impl Pairing {
+    /// Finds the pairs of the first `count` parts.
+    fn find_first(&mut self, count: usize) {
+        let mut holders: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (list, parts) in self.lists.iter().enumerate() {
+            parts.iter().for_each(|(part, _)| holders[*part as usize].push(list as u32));
+        }
+        for (part, holders) in holders.iter().enumerate() {
+            let after = |parts: &[(u32, bool)]| parts.partition_point(|(other, _)| *other as usize <= part);
+            self.find(part as u32, holders, &|parts| after(parts)..parts.len());
+        }
+    }
+
+    /// Finds the pairs of a new part, the last, that these lists have.
+    fn find_with(&mut self, new: u32, users: &[u32]) {
+        self.find(new, users, &|parts| 0..parts.len() - 1);
+    }
+
+    /// Finds the pairs of a part in the lists that have it, with those parts that stand in `range`.
+    fn find(&mut self, part: u32, holders: &[u32], range: &dyn Fn(&[(u32, bool)]) -> Range<usize>) {
+        let Self { lists, candidates, users, queue, counts } = self;
+        if holders.len() < 2 {
+            return;
+        }
+        let others = |list: u32| {
+            let parts = &lists[list as usize];
+            let own = parts.binary_search_by_key(&part, |(other, _)| *other);
+            let sign = own.is_ok_and(|place| parts[place].1);
+            parts[range(parts)].iter().map(move |(other, of_other)| (*other, *of_other != sign))
+        };
+        for (other, differ) in holders.iter().flat_map(|list| others(*list)) {
+            if counts.len() <= other as usize {
+                counts.resize(other as usize + 1, [(0, 0); 2]);
+            }
+            counts[other as usize][usize::from(differ)].0 += 1;
+        }
+        for list in holders {
+            for (other, differ) in others(*list) {
+                let (count, candidate) = &mut counts[other as usize][usize::from(differ)];
+                if *count > 1 && *count != MET {
+                    // the first list that has it makes room for all
+                    let start = users.len();
+                    users.resize(start + *count as usize, 0);
+                    *candidate = candidates.len();
+                    let parts = [part.min(other), part.max(other)];
+                    queue.push((*count as usize, Reverse((parts, differ)), *candidate));
+                    candidates.push(Candidate { parts, differ, users: start..start });
+                    *count = MET;
+                }
+                if *count == MET {
+                    let place = &mut candidates[*candidate].users.end;
+                    users[*place] = *list;
+                    *place += 1;
+                }
+            }
+        }
+        for (other, differ) in holders.iter().flat_map(|list| others(*list)) {
+            counts[other as usize][usize::from(differ)].0 = 0;
+        }
+    }
+
+    /// The pair that most lists have, the first of several, and which lists.
+    fn most_frequent(&mut self) -> Option<([u32; 2], bool, Vec<u32>)> {
+        while let Some((count, _, index)) = self.queue.pop() {
+            let Candidate { parts, differ, users } = &mut self.candidates[index];
+            // lists lose parts and get new ones only: counts fall
+            let mut end = users.start;
+            for place in users.clone() {
+                let user = self.users[place];
+                if has(&self.lists[user as usize], *parts, *differ) {
+                    self.users[end] = user;
+                    end += 1;
+                }
+            }
+            users.end = end;
+            if users.len() == count {
+                return Some((*parts, *differ, self.users[users.clone()].to_vec()));
+            }
+            if users.len() > 1 {
+                self.queue.push((users.len(), Reverse((*parts, *differ)), index));
+            }
+        }
+        None
+    }
+
+    /// Puts a part, the last, in the place of two; gives its sign.
+    fn merge(&mut self, list: u32, [a, b]: [u32; 2], new: u32) -> bool {
+        let parts = &mut self.lists[list as usize];
+        // pairs are of parts that are there
+        let sign = parts.iter().find(|(part, _)| *part == a).is_some_and(|(_, sign)| *sign);
+        parts.retain(|(part, _)| *part != a && *part != b);
+        parts.push((new, sign));
+        sign
+    }
+}
+
+/// In the place of a count: the pair is a candidate.
+const MET: u32 = u32::MAX;
+
+fn has(parts: &[(u32, bool)], pair: [u32; 2], differ: bool) -> bool {
+    let sign =
+        |part: u32| parts.binary_search_by_key(&part, |(other, _)| *other).ok().map(|place| parts[place].1);
+    let [a, b] = pair.map(sign);
+    a.zip(b).is_some_and(|(a, b)| (a != b) == differ)
 }

@@ -3,8 +3,6 @@
 //! Like terms and equal bases are collected, constants folded, `a - b` is `a + (-1) b` and `a / b` is `a b⁻¹`. Nothing is
 //! multiplied out: that would lose the factors that grouped constants and short code live from.
 
-use std::collections::BTreeMap;
-
 use super::{Comparison, Expr, Graph, Node, Shape};
 use crate::{Function, arithmetic};
 
@@ -14,7 +12,7 @@ impl Graph {
         let Some(first) = terms.first() else { return self.number(0.0) };
         let shape = self.shape(*first);
         let mut constant = 0.0;
-        let mut collected: BTreeMap<Expr, f64> = BTreeMap::new();
+        let mut collected: Vec<(Expr, f64)> = Vec::with_capacity(terms.len());
         let mut remaining: Vec<(f64, Expr)> = terms.iter().rev().map(|term| (1.0, *term)).collect();
         while let Some((factor, term)) = remaining.pop() {
             debug_assert_eq!(self.shape(term), shape, "terms of one shape");
@@ -27,10 +25,19 @@ impl Graph {
                     Node::Sum(inner) if coefficient.abs() == 1.0 => {
                         remaining.extend(inner.iter().rev().map(|term| (coefficient, *term)));
                     }
-                    _ => *collected.entry(rest).or_insert(0.0) += coefficient,
+                    _ => collected.push((rest, coefficient)),
                 },
             }
         }
+        // stable: like terms are added up in the order in which they came
+        collected.sort_by_key(|(rest, _)| *rest);
+        collected.dedup_by(|(rest, coefficient), (first, sum)| {
+            let is_like = rest == first;
+            if is_like {
+                *sum += *coefficient;
+            }
+            is_like
+        });
         if shape == Shape::Matrix {
             self.collect_multiples_of_identity(&mut collected);
         }
@@ -54,20 +61,22 @@ impl Graph {
     }
 
     /// `s I + t I` is `(s + t) I`: one term.
-    fn collect_multiples_of_identity(&mut self, collected: &mut BTreeMap<Expr, f64>) {
+    fn collect_multiples_of_identity(&mut self, collected: &mut Vec<(Expr, f64)>) {
         let factor_of = |graph: &Self, rest: Expr| match graph.node(rest) {
             Node::Identity => Some(None),
             Node::Scale(factor, tensor) if *graph.node(*tensor) == Node::Identity => Some(Some(*factor)),
             _ => None,
         };
-        let multiples: Vec<(Expr, Option<Expr>)> =
-            collected.keys().filter_map(|rest| Some((*rest, factor_of(self, *rest)?))).collect();
+        let multiples: Vec<(f64, Option<Expr>)> = collected
+            .iter()
+            .filter_map(|(rest, coefficient)| Some((*coefficient, factor_of(self, *rest)?)))
+            .collect();
         if multiples.len() < 2 {
             return;
         }
+        collected.retain(|(rest, _)| factor_of(self, *rest).is_none());
         let mut factors = Vec::with_capacity(multiples.len());
-        for (rest, factor) in multiples {
-            let coefficient = collected.remove(&rest).unwrap_or_default();
+        for (coefficient, factor) in multiples {
             factors.push(match factor {
                 Some(factor) => self.times_number(coefficient, factor),
                 None => self.number(coefficient),
@@ -78,7 +87,8 @@ impl Graph {
         if !self.is_zero(multiple)
             && let (coefficient, Some(rest)) = self.split_coefficient(multiple)
         {
-            collected.insert(rest, coefficient);
+            let place = collected.partition_point(|(other, _)| *other < rest);
+            collected.insert(place, (rest, coefficient));
         }
     }
 
@@ -110,12 +120,14 @@ impl Graph {
         match self.node(expr) {
             Node::Number(bits) => (bits.value(), None),
             Node::Product(factors) => {
+                if !factors.iter().any(|factor| self.value(*factor).is_some()) {
+                    return (1.0, Some(expr));
+                }
                 let factors = factors.clone();
                 let (numbers, others): (Vec<Expr>, Vec<Expr>) =
                     factors.iter().partition(|factor| self.value(**factor).is_some());
                 let coefficient = numbers.iter().filter_map(|number| self.value(*number)).product();
-                let rest = if numbers.is_empty() { expr } else { self.product(&others) };
-                (coefficient, Some(rest))
+                (coefficient, Some(self.product(&others)))
             }
             Node::Scale(factor, tensor) => {
                 let (factor, tensor) = (*factor, *tensor);
@@ -130,24 +142,32 @@ impl Graph {
     /// Product of numbers.
     pub fn product(&mut self, factors: &[Expr]) -> Expr {
         let mut coefficient = 1.0;
-        let mut exponents: BTreeMap<Expr, Vec<Expr>> = BTreeMap::new();
+        // base, exponent, and the power of both
+        let mut powers: Vec<(Expr, Expr, Expr)> = Vec::with_capacity(factors.len());
         let one = self.number(1.0);
         let mut remaining: Vec<Expr> = factors.iter().rev().copied().collect();
         while let Some(factor) = remaining.pop() {
             match self.node(factor) {
                 Node::Number(bits) => coefficient *= bits.value(),
                 Node::Product(inner) => remaining.extend(inner.iter().rev()),
-                Node::Power(base, exponent) => exponents.entry(*base).or_default().push(*exponent),
-                _ => exponents.entry(factor).or_default().push(one),
+                Node::Power(base, exponent) => powers.push((*base, *exponent, factor)),
+                _ => powers.push((factor, one, factor)),
             }
         }
         if coefficient == 0.0 {
             return self.number(0.0);
         }
-        let mut product = Vec::with_capacity(exponents.len() + 1);
-        for (base, exponents) in exponents {
-            let exponent = self.sum(&exponents);
-            let power = self.power(base, exponent);
+        powers.sort_by_key(|(base, ..)| *base);
+        let mut product = Vec::with_capacity(powers.len() + 1);
+        for equal in powers.chunk_by(|(base, ..), (next, ..)| base == next) {
+            let power = match equal {
+                [(_, _, power)] => *power,
+                _ => {
+                    let exponents: Vec<Expr> = equal.iter().map(|(_, exponent, _)| *exponent).collect();
+                    let exponent = self.sum(&exponents);
+                    self.power(equal[0].0, exponent)
+                }
+            };
             match self.node(power) {
                 Node::Number(bits) => coefficient *= bits.value(),
                 Node::Product(inner) => product.extend(inner.iter().copied()),
