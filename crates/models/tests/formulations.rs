@@ -12,7 +12,7 @@ use souple_models::derive::{MapKind, element_kernel};
 use souple_models::materials::{self, Material, WrittenLaw};
 use souple_models::solids::derived::{DERIVED, Derived};
 use souple_models::solids::{
-    DifferencedForce, FORMULATIONS, FormulationError, Quadrature, Section, SolidDescription,
+    DifferencedForce, FORMULATIONS, FormulationError, Quadrature, Section, SolidDescription, formulated,
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
@@ -106,7 +106,7 @@ fn build_section(
         section,
     };
     let entry = FORMULATIONS.find(formulation).unwrap();
-    (entry.build)(&description, &entry.values(values).unwrap())
+    formulated(entry.build, &description, &entry.values(values).unwrap())
 }
 
 fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3]) -> Configuration<'a> {
@@ -540,6 +540,30 @@ fn pairs_are_linear() {
             assert!(sum.length() < 1e-12 * norm(&found.force), "{name} {element}: momentum");
         }
     }
+}
+
+/// A text that is a law of the table is taken as that where formulations take no text, and answers the same.
+#[test]
+fn texts_that_are_laws_are_taken() {
+    let svk = text("1/2*mu*tr(E)^2 + 1/2*k*dot(E, E)");
+    for (formulation, element) in
+        [("derived", "hex8"), ("derived", "tet4"), ("tensor_mass", "tet4"), ("four_loops", "tet4")]
+    {
+        let mesh = bar(element);
+        let x = bent(&mesh);
+        let of_text = build(formulation, &mesh, &svk).unwrap();
+        let of_samples = build("samples", &mesh, &svk).unwrap();
+        let [ours, theirs] = [&of_text, &of_samples].map(|force| answers(force.as_ref(), &x).force);
+        // moduli and sums of a dozen terms at hundreds of samples
+        assert!(distance(&theirs, &ours) < 1e-11, "{formulation} {element}");
+    }
+    let linear = text("1/2*mu*tr(eps)^2 + 1/2*k*dot(eps, eps)");
+    for formulation in ["edge_tensors", "hybrid", "gauss_voronoi", "particles", "element_corotational"] {
+        assert!(build(formulation, &bar("tet4"), &linear).is_ok(), "{formulation}");
+    }
+    let other = text("mu/2*(I1_bar - 3) + k/2*(J - 1)^2");
+    let refused = build("tensor_mass", &bar("tet4"), &other).err().unwrap().to_string();
+    assert!(refused.contains("cannot take the law `hyperelastic`"), "{refused}");
 }
 
 /// What a formulation cannot do is refused, with what it takes.

@@ -22,11 +22,21 @@ pub fn is_one(source: &Source) -> bool {
     source.name == NAME
 }
 
-/// The settings of parts of what a path leads to, or of it.
+/// What stands beside an energy and says what it is.
+const BESIDE_ENERGY: [&str; 2] = ["parameters", "definitions"];
+
+/// The settings of parts of what a path leads to, of it, or of what is read with it.
 pub fn within<'a>(path: &str, sources: &'a Sources) -> impl Iterator<Item = &'a str> {
+    let starts_with = |set: &str, path: &str| {
+        set.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    };
     let is_within = move |text: &&str| {
         let set = text.split('=').next().unwrap_or_default().trim();
-        set.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        // an energy is read together with its constants and the names of its parts
+        let law = path.strip_suffix(".energy");
+        let is_of_law =
+            |law: &str| BESIDE_ENERGY.iter().any(|beside| starts_with(set, &format!("{law}.{beside}")));
+        starts_with(set, path) || law.is_some_and(is_of_law)
     };
     let settings = sources.iter().filter(|source| is_one(source)).map(|source| &*source.text);
     settings.filter(is_within)

@@ -11,12 +11,13 @@ use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::{Carried, FramesReport};
+use souple_models::materials::Material;
 use souple_models::multiresolution::Dress;
 use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
 use crate::adjust::Adjustable;
-use crate::compile::{NetworkInfo, OwnRows, Placed, compile};
+use crate::compile::{BodyMaterials, NetworkInfo, OwnRows, Placed, compile};
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
@@ -97,21 +98,31 @@ pub struct LawsInfo {
     pub of_cell: Vec<u16>,
     /// That of cells which exceed a criterion.
     pub second: Option<String>,
+    materials: Vec<Material>,
 }
 
 impl LawsInfo {
-    fn new(spec: &Body, of_cell: Vec<u16>) -> Self {
+    fn new(spec: &Body, materials: BodyMaterials) -> Self {
         let main = spec.material.iter().map(|law| law.entry.name.to_owned());
         // those without a law or a region have no number either
         let whole = spec.regions.iter().filter(|part| part.region.is_some());
         let parts =
             whole.filter_map(|part| Some(format!("{} ({})", part.material.as_ref()?.entry.name, part.name)));
         let second = spec.adapt.as_ref().and_then(|adapt| adapt.material.as_ref());
+        let names: Vec<String> = main.chain(parts).collect();
+        let BodyMaterials { all, of_cell } = materials;
         Self {
-            names: main.chain(parts).collect(),
+            materials: all.into_iter().take(names.len()).collect(),
+            names,
             of_cell,
             second: second.map(|law| law.entry.name.to_owned()),
         }
+    }
+
+    /// The names whose laws are texts that are laws of the table, each with that which it runs as.
+    pub fn texts_of_table(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        let both = self.names.iter().zip(&self.materials);
+        both.filter_map(|(name, material)| Some((name.as_str(), material.text_runs_as()?)))
     }
 }
 
@@ -316,7 +327,7 @@ impl BodyInfo {
 
     pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
         let Placed { spec, system, rows, mesh, frames, materials, hanging, .. } = placed;
-        let laws = LawsInfo::new(spec, materials.of_cell);
+        let laws = LawsInfo::new(spec, materials);
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
         let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown);

@@ -129,6 +129,12 @@ fn settings_are_to_blame_for_what_they_make() {
         let answer = souple(["check", &scene, "--set", setting]).ends(2);
         assert!(answer.stderr.starts_with("--set:1:") && answer.stderr.contains(words), "{answer:#?}");
     }
+    // an energy is read together with its constants
+    let scene_of_text = common::scenes().join("rubber_as_text").display().to_string();
+    for setting in ["bodies.block.material.parameters.k=0 Pa", "bodies.block.material.definitions.x=J + 3"] {
+        let answer = souple(["check", &scene_of_text, "--set", setting]).ends(2);
+        assert!(answer.stderr.contains(&format!("= with --set {setting}")), "{answer:#?}");
+    }
     // what is found behind the reading is shown where the scene has the whole, with the setting
     let scene_of_levels = common::scenes().join("octree_cube").display().to_string();
     let setting = "bodies.cube.octree.fixed=\"99\"";

@@ -29,9 +29,15 @@ type OfTable = (AnyLaw, Lame);
 
 impl Material {
     /// The material with the law of the table that its text is, if it is one; else as it is.
-    pub(crate) fn of_table(&self) -> Self {
+    pub fn of_table(&self) -> Self {
         let MaterialLaw::Text(text) = &self.law else { return self.clone() };
         self.with_law(text.law_of_table())
+    }
+
+    /// The name of the law of the table that its text is, if it has one and that is one.
+    pub fn text_runs_as(&self) -> Option<&'static str> {
+        let MaterialLaw::Text(text) = &self.law else { return None };
+        text.law_of_table().map(|(law, _)| law.entry().name)
     }
 
     fn with_law(&self, law: Option<OfTable>) -> Self {

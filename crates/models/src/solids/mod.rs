@@ -62,7 +62,8 @@ pub use difference::DifferencedForce;
 pub(crate) use formulation::four_loop_count;
 pub(crate) use formulation::linear_pairs;
 pub use formulation::{
-    BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, operator_quality,
+    BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, formulated,
+    operator_quality,
 };
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass, voronoi_mass};

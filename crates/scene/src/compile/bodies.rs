@@ -12,7 +12,7 @@ use souple_models::materials::Material;
 use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
-    SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass, voronoi_mass,
+    SolidForce, Viscosity, consistent_mass, formulated, lumped_mass, uniform_mass, voronoi_mass,
 };
 
 use super::frames::PlacedFrames;
@@ -289,7 +289,7 @@ fn add_solid(
     forces: &mut Vec<Box<dyn Force>>,
 ) -> Result<(), FormulationError> {
     let elastic: Box<dyn Force> = match (&body.formulation, adapted(body)) {
-        (Some(chosen), _) => (chosen.entry.build)(&description, &chosen.values)?,
+        (Some(chosen), _) => formulated(chosen.entry.build, &description, &chosen.values)?,
         (None, Some((second, adaptation))) => {
             let laws = [description.materials[0].clone(), second];
             Box::new(AdaptiveForce::new(&description, laws, adaptation)?)

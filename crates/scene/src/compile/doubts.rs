@@ -183,7 +183,11 @@ fn of_material(material: &Material, locking: Option<&'static str>) -> impl Itera
     let [bulk, shear] = material.bulk_and_shear();
     let ratio = bulk / shear - 2.0 / 3.0;
     let modulus_doubt = (!within(modulus, MODULI)).then(|| {
-        let hint = if modulus < MODULI[0] { "did you mean kPa or MPa?" } else { "did you mean Pa or kPa?" };
+        let hint = if modulus < MODULI[0] {
+            "did you mean kPa or MPa?"
+        } else {
+            "more than that of any matter; is the unit right?"
+        };
         format!("Young's modulus is {modulus:.3e} Pa: {hint}")
     });
     let density_doubt = (!within(density, DENSITIES)).then(|| {

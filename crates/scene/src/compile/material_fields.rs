@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use souple_models::materials::Material;
 use souple_table::{Kind, Parameter, Value};
 
 use super::Draft;
 use super::bodies::{BodyMaterials, Placed};
 use crate::diagnostic::Code;
+use crate::keys::did_you_mean;
 use crate::spec::body::{FieldValues, MaterialField};
 
 /// More materials than this are not told apart.
@@ -26,8 +28,14 @@ pub fn spread(draft: &Draft, body: &Placed, materials: BodyMaterials) -> Option<
         let Some(parameter) = main.entry.parameters.iter().find(is_number) else {
             let numbers = main.entry.parameters.iter().filter(|parameter| parameter.kind == Kind::Number);
             let known: Vec<&str> = numbers.map(|parameter| parameter.name).collect();
-            let message = format!("`{}` is no number of the material `{}`", field.parameter, main.entry.name);
-            draft.log.add(Code::UnknownName, &field.site, message, known.join(", "));
+            let hint = did_you_mean(&field.parameter, known.iter().copied());
+            let message =
+                format!("`{}` is no number of the material `{}`{hint}", field.parameter, main.entry.name);
+            let law = materials.all.first().and_then(Material::text_runs_as);
+            let by_name = law.map_or_else(String::new, |law| {
+                format!("; or the law by its name, `{law}`, which this text is, with its numbers")
+            });
+            draft.log.add(Code::UnknownName, &field.site, message, known.join(", ") + &by_name);
             return None;
         };
         columns.push((parameter, values(draft, body, field, parameter)?));

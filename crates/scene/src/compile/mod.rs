@@ -28,7 +28,7 @@ mod skins;
 mod start;
 mod tissue;
 
-pub(crate) use bodies::{Placed, solid_name};
+pub(crate) use bodies::{BodyMaterials, Placed, solid_name};
 pub(crate) use boundary::constant_vector;
 pub(crate) use frames::hold_name;
 pub use hanging::OwnRows;

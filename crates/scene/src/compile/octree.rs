@@ -90,7 +90,7 @@ fn suits(draft: &Draft, body: &Body, spec: &OctreeSpec) -> bool {
         return refuse("particles know no rates of strain", "`rayleigh_mass`");
     }
     let is_linear = body.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
-    if is_linear.is_some_and(|material| material.law != MaterialLaw::Known(AnyLaw::Linear)) {
+    if is_linear.is_some_and(|material| material.of_table().law != MaterialLaw::Known(AnyLaw::Linear)) {
         return refuse(
             "operators on particles are of the linear law",
             "`material = { name = \"linear\", … }`",

@@ -120,6 +120,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "systems": systems,
         "networks": networks.iter().zip(&network_costs).map(|(n, costs)| (n.name.clone(), network_to_json(n, costs))).collect::<Map<_, _>>(),
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
+        "texts": texts_of_table(&bodies).map(|(body, (name, law))| json!({ "body": body, "text": name, "law": law })).collect::<Vec<_>>(),
         "frames": frames_to_json(&bodies),
         "frames_needed": needed.iter().map(|of| (of.body.clone(), of.to_json())).collect::<Map<_, _>>(),
         "probes": probes.len(),
@@ -166,6 +167,9 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
             system["stepper"].as_str().unwrap_or_default(),
             system["timestep_seconds"].as_f64().unwrap_or_default(),
         ));
+    }
+    for (body, (name, law)) in texts_of_table(&bodies) {
+        print_line(format_args!("  {name} of {body} is {law}, and runs as that"));
     }
     for (network, costs) in networks.iter().zip(&network_costs) {
         print_network(network, costs);
@@ -308,6 +312,11 @@ fn first_step_refused(arguments: &Arguments, error: &WorldError) -> Value {
 
 fn end_of(errors: &[Value]) -> End {
     if errors.is_empty() { End::Done } else { End::Failed }
+}
+
+/// Bodies with a text that is a law of the table: the name of the text, and of the law.
+fn texts_of_table(bodies: &[BodyInfo]) -> impl Iterator<Item = (&str, (&str, &'static str))> {
+    bodies.iter().flat_map(|body| body.laws.texts_of_table().map(|text| (body.name.as_str(), text)))
 }
 
 /// Seconds that the forces of a network take in a step, law by law: the fastest of a few evaluations as it stands.

@@ -13,7 +13,8 @@ use souple_mesh::{ElementKind, MAX_NODES, QuadratureRule};
 pub enum Criterion {
     /// `R_L`: the greatest change of length of an edge, relative.
     Length,
-    /// `R_A`: the change of volume, of a surface element that of area, relative. Under small strain it tells rotation: `tan²θ`.
+    /// `R_A`: the change of volume, of a surface element that of area, relative. Under small strain it tells rotation: `tan²θ`. What is
+    /// turned inside out is over any threshold; a membrane has no inside.
     Volume,
     /// `R_F`: the greatest growth of the shape factor of a triangle of three corners of a face, of a surface element its own, circumradius
     /// over twice the inradius, relative.
@@ -28,6 +29,8 @@ pub struct Element<'a> {
     pub rule: &'a QuadratureRule,
     /// Of a volume one, of a surface element its thickness [m].
     pub thickness: f64,
+    /// In a plane of constant z, where areas have a sign: that of the element at rest is positive.
+    pub is_plane: bool,
     pub rest: &'a [Vec3],
     pub now: &'a [Vec3],
 }
@@ -47,7 +50,7 @@ impl Element<'_> {
     pub fn measure(&self, criterion: Criterion, stress: impl Fn(&Mat3) -> Mat3) -> f64 {
         match criterion {
             Criterion::Length => self.length(),
-            Criterion::Volume => (self.volume(self.now) / self.volume(self.rest) - 1.0).abs(),
+            Criterion::Volume => change_of_volume(self.volume(self.now) / self.volume(self.rest)),
             Criterion::Shape => self.shape(),
             Criterion::Force => self.mean_force(stress),
         }
@@ -62,8 +65,14 @@ impl Element<'_> {
     }
 
     fn volume(&self, x: &[Vec3]) -> f64 {
-        let points = &self.rule.points;
-        points.iter().map(|point| point.weight * self.kind.jacobian(x, point.position).determinant()).sum()
+        let of_point = |xi: Vec3| {
+            let now = self.kind.jacobian(x, xi);
+            // the third column is the normal: the determinant is an area
+            let is_over =
+                self.is_plane && now.columns[2].dot(self.kind.jacobian(self.rest, xi).columns[2]) < 0.0;
+            if is_over { -now.determinant() } else { now.determinant() }
+        };
+        self.rule.points.iter().map(|point| point.weight * of_point(point.position)).sum()
     }
 
     fn shape(&self) -> f64 {
@@ -96,7 +105,7 @@ impl Element<'_> {
             let field: Vec3 = shape.iter().zip(&forces).map(|(N, f)| *f * *N).sum();
             sum += volume * field.length();
         }
-        // an element that is inverted is over any threshold, as one without volume is; areas have no sign
+        // an element that is inverted is over any threshold, as one without volume is
         sum / self.volume(self.now).max(0.0)
     }
 
@@ -112,6 +121,11 @@ impl Element<'_> {
             visit(now * inverse, inverse, volume, point.position);
         }
     }
+}
+
+/// `|V/V₀ - 1|`, without bound where the element is turned inside out.
+fn change_of_volume(ratio: f64) -> f64 {
+    if ratio <= 0.0 { f64::INFINITY } else { (ratio - 1.0).abs() }
 }
 
 /// `abc / (8 (s - a)(s - b)(s - c))` with `s` half the circumference: 1 of an equilateral triangle, without bound as it gets flat.
@@ -133,7 +147,9 @@ mod tests {
         let rest = kind.regular();
         let now: Vec<Vec3> = rest.iter().map(|x| *F * *x).collect();
         let thickness = if kind.dimension() == 2 { 0.01 } else { 1.0 };
-        let element = Element { kind, rule: kind.default_rule(), thickness, rest: &rest, now: &now };
+        let is_plane = kind.dimension() == 2 && F.columns[2] == Vec3::AXES[2];
+        let element =
+            Element { kind, rule: kind.default_rule(), thickness, is_plane, rest: &rest, now: &now };
         // Hooke's law with μ = 1, λ = 0
         element.measure(criterion, |F| (*F + F.transpose()).plus_diagonal(-2.0))
     }
@@ -204,6 +220,22 @@ mod tests {
             assert!([Length, Volume, Shape].iter().all(|criterion| near(of(kind, &turn, *criterion), 0.0)));
             let pulled = Mat3::from_diagonal(Vec3::new(1.5, 1.0, 1.0));
             assert!(near(of(kind, &pulled, Volume), 0.5) && of(kind, &pulled, Shape) > 0.05, "{kind}");
+        }
+    }
+
+    /// A mirrored element has the area, the edges and the angles of the one at rest; in a plane it is turned inside out, as a mirrored volume is.
+    #[test]
+    fn inverted_elements_are_over_any_threshold() {
+        let mirrored = Mat3::from_diagonal(Vec3::new(-1.0, 1.0, 1.0));
+        let surfaces = [ElementKind::Tri3, ElementKind::Quad4, ElementKind::Tri6, ElementKind::Quad9];
+        for kind in surfaces.into_iter().chain(KINDS) {
+            assert_eq!(of(kind, &mirrored, Criterion::Volume), f64::INFINITY, "{kind}");
+            assert!(of(kind, &mirrored, Criterion::Length) < 1e-12, "{kind}");
+        }
+        // of a sheet in space it is the other side
+        let turned_over = Mat3::from_diagonal(Vec3::new(-1.0, 1.0, -1.0));
+        for kind in surfaces {
+            assert!(of(kind, &turned_over, Criterion::Volume) < 1e-12, "{kind}");
         }
     }
 }

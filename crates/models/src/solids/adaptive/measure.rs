@@ -21,6 +21,8 @@ pub struct Measured<'a> {
     /// Of the chunk's own rows.
     pub rest: &'a [Padded],
     pub now: &'a [Padded],
+    /// In a plane of constant z, where areas have a sign.
+    pub is_plane: bool,
 }
 
 impl Measured<'_> {
@@ -50,13 +52,16 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { of, criterion, threshold, excess } = self;
-        let Measured { kind, chunk, reference, rest, now } = *of;
+        let Measured { kind, chunk, reference, rest, now, is_plane } = *of;
         let (nodes, blocks) = (kind.node_count(), chunk.block_count());
         let samples = reference.len() / nodes;
         for_each_group!(simd, chunk, nodes, samples, 0..blocks, N, |group| {
             let x = group.gather(now);
             let measured = match criterion {
-                Criterion::Volume => volume(kind, &group, &x, reference),
+                Criterion::Volume => {
+                    let rest = group.gather(rest);
+                    volume(kind, &group, [&rest, &x], reference, is_plane)
+                }
                 Criterion::Length => length(kind, &group.gather(rest), &x),
                 Criterion::Shape => shape(kind, &group.gather(rest), &x),
                 Criterion::Force => unreachable!("its law is asked cell by cell"),
@@ -64,7 +69,9 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
             for (offset, number) in measured.as_slice().iter().enumerate() {
                 // lane `l` of block `b` holds cell `l · blocks + b`
                 if let Some(excess) = excess.get_mut((group.lane + offset) * blocks + group.block) {
-                    let over = number / threshold;
+                    // turned inside out
+                    let is_over = criterion == Criterion::Volume && *number <= -1.0;
+                    let over = if is_over { f64::INFINITY } else { number.abs() / threshold };
                     *excess = if over.is_nan() { f64::INFINITY } else { excess.max(over) };
                 }
             }
@@ -72,28 +79,36 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
     }
 }
 
-// |Σ ω det F / Σ ω - 1|, where of a surface element det F is the ratio of areas
+// Σ ω det F / Σ ω - 1, where of a surface element det F is the ratio of areas
 #[inline(always)]
 fn volume<S: Simd, const N: usize>(
     kind: ElementKind,
     group: &Group<'_, S, N>,
-    x: &[Vec3<Lanes<S>>; N],
+    [at_rest, x]: [&[Vec3<Lanes<S>>; N]; 2],
     reference: &[Vec3],
+    is_plane: bool,
 ) -> Lanes<S> {
     let nodes = group.nodes;
     let zero = Lanes::constant(group.simd, 0.0);
     let (mut now, mut rest) = (zero, zero);
     for sample in 0..group.samples {
         let (inverse, volume) = group.sample(sample);
-        let J = AnyElement::gradient(&x[..nodes], &reference[sample * nodes..(sample + 1) * nodes]);
+        let reference = &reference[sample * nodes..(sample + 1) * nodes];
+        let J = AnyElement::gradient(&x[..nodes], reference);
         let of_now = match kind.dimension() {
+            2 if is_plane => {
+                // a cell may be wound either way round
+                let J0 = AnyElement::gradient(&at_rest[..nodes], reference);
+                let [now, rest] = [J, J0].map(|J| J.columns[0].cross(J.columns[1]).z);
+                now * (rest / rest.abs())
+            }
             2 => J.columns[0].cross(J.columns[1]).length(),
             _ => J.determinant(),
         };
         now += volume * (of_now * inverse.determinant());
         rest += volume;
     }
-    (now / rest - 1.0).abs()
+    now / rest - 1.0
 }
 
 // the longest and the shortest by squares, and one root of each

@@ -38,6 +38,26 @@ use crate::materials::{AnyLaw, Lame, Material, MaterialLaw};
 /// Makes the elastic force of a body from it and the formulation's own values.
 pub type BuildFormulation = fn(&SolidDescription, &Values) -> Result<Box<dyn Force>, FormulationError>;
 
+/// The elastic force of a body; texts that are laws of the table are taken as those by formulations that take no text.
+///
+/// # Errors
+/// The formulation does not take the body.
+pub fn formulated(
+    build: BuildFormulation,
+    description: &SolidDescription,
+    values: &Values,
+) -> Result<Box<dyn Force>, FormulationError> {
+    let refused = match build(description, values) {
+        Err(refused @ (FormulationError::Law { .. } | FormulationError::Underived { .. })) => refused,
+        answer => return answer,
+    };
+    let materials = Material::all_of_table(description.materials);
+    if materials.iter().zip(description.materials).all(|(known, given)| known.law == given.law) {
+        return Err(refused);
+    }
+    build(&SolidDescription { materials: &materials, ..description.clone() }, values)
+}
+
 /// All formulations.
 pub static FORMULATIONS: Table<BuildFormulation> = Table {
     kind: "formulation",
