@@ -264,3 +264,23 @@ fn surface_elements_switch_by_every_criterion() {
         }
     }
 }
+
+/// In a plane a mirrored sheet, whose sides, areas and angles are those at rest, is turned inside out: every element takes the second law
+/// whatever the threshold. A membrane that lies on its other side takes none.
+#[test]
+fn inverted_plane_elements_switch() {
+    for (mesh, section) in sheets() {
+        let force = adaptive_section(&mesh, section, &[(Criterion::Volume, 100.0)], 0.0);
+        let mut memory = vec![0.0; force.memory_len()];
+        let mirrored: Vec<Vec3> = mesh.points.iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect();
+        let v = vec![Vec3::ZERO; mesh.points.len()];
+        let excess = force.adapted(0, &at(&mirrored, &v, &memory)).unwrap().excess;
+        force.end_step(&mirrored, &mut memory);
+        let switched = memory[..mesh.cell_count()].iter().filter(|law| **law != 0.0).count();
+        if matches!(section, Section::Membrane { .. }) {
+            assert!(excess < 1e-12 && switched == 0, "{section:?}");
+        } else {
+            assert!(excess == f64::INFINITY && switched == mesh.cell_count(), "{section:?}: {excess}");
+        }
+    }
+}

@@ -32,7 +32,7 @@ use super::kernel::Kernel;
 use super::layout::{Chunk, LANES};
 use super::parallel;
 use super::stiffness::Shapes;
-use super::{FlatCell, Kernels, Section, SolidDescription, SolidForce};
+use super::{FlatCell, Kernels, SolidDescription, SolidForce};
 use crate::materials::Material;
 
 /// When elements change their law.
@@ -114,11 +114,6 @@ impl AdaptiveForce {
         Ok(Self { solids, mesh, adaptation, rest, first_cell })
     }
 
-    /// Whether the body lies in a plane of constant z, where areas have a sign.
-    fn is_plane(&self) -> bool {
-        matches!(self.solids[0].section, Section::PlaneStrain { .. } | Section::PlaneStress { .. })
-    }
-
     fn laws<'a>(&self, memory: &'a [f64]) -> &'a [f64] {
         &memory[..self.mesh.cell_count()]
     }
@@ -137,7 +132,7 @@ impl AdaptiveForce {
             kind: of_mesh.kind,
             rule: self.solids[0].quadrature().rule(of_mesh.kind),
             thickness: self.solids[0].section.measure(),
-            is_plane: self.is_plane(),
+            is_plane: self.solids[0].section.is_plane(),
             rest: &rest[..count],
             now: &now[..count],
         })
@@ -177,7 +172,14 @@ impl AdaptiveForce {
             }
             let (kind, reference, rest) = (batch.kind, &batch.reference, &self.rest[number]);
             chunk.with_own_rows([positions], |[now]| {
-                let measured = Measured { kind, chunk, reference, rest, now, is_plane: self.is_plane() };
+                let measured = Measured {
+                    kind,
+                    chunk,
+                    reference,
+                    rest,
+                    now,
+                    is_plane: self.solids[0].section.is_plane(),
+                };
                 for (criterion, threshold) in &self.adaptation.thresholds {
                     if *criterion != Criterion::Force {
                         measured.raise(*criterion, *threshold, excess);
