@@ -220,6 +220,9 @@ struct Candidate {
     users: Range<usize>,
 }
 
+/// How many lists have a candidate, its parts and whether their signs differ, and its number.
+type Queued = (usize, Reverse<([u32; 2], bool)>, usize);
+
 /// The pairs of all lists by the numbers of their parts, which ascend as parts do.
 #[derive(Default)]
 struct Pairing {
@@ -229,7 +232,7 @@ struct Pairing {
     /// Lists of candidates, one after another.
     users: Vec<u32>,
     /// How many lists had a candidate when it was last looked at; most first, then the first pair.
-    queue: BinaryHeap<(usize, Reverse<([u32; 2], bool)>, usize)>,
+    queue: BinaryHeap<Queued>,
     /// By number of a part and whether signs differ: how many lists have it beside the part in question, and of which candidate that is.
     counts: Vec<[(u32, usize); 2]>,
 }
@@ -243,17 +246,17 @@ impl Pairing {
         }
         for (part, holders) in holders.iter().enumerate() {
             let after = |parts: &[(u32, bool)]| parts.partition_point(|(other, _)| *other as usize <= part);
-            self.find(part as u32, holders, &|parts| after(parts)..parts.len());
+            self.find(part as u32, holders, |parts| after(parts)..parts.len());
         }
     }
 
     /// Finds the pairs of a new part, the last, that these lists have.
     fn find_with(&mut self, new: u32, users: &[u32]) {
-        self.find(new, users, &|parts| 0..parts.len() - 1);
+        self.find(new, users, |parts| 0..parts.len() - 1);
     }
 
     /// Finds the pairs of a part in the lists that have it, with those parts that stand in `range`.
-    fn find(&mut self, part: u32, holders: &[u32], range: &dyn Fn(&[(u32, bool)]) -> Range<usize>) {
+    fn find(&mut self, part: u32, holders: &[u32], range: impl Fn(&[(u32, bool)]) -> Range<usize>) {
         let Self { lists, candidates, users, queue, counts } = self;
         if holders.len() < 2 {
             return;
