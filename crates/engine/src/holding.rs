@@ -53,8 +53,8 @@ pub trait Holding: Send + Sync {
 
     fn felt(&self) -> Felt;
 
-    /// Takes what is felt now [N].
-    fn feel(&self, force: Vec3, memory: &mut [f64]);
+    /// Takes what is felt now, and what the points bear in all, on the tool [N].
+    fn feel(&self, felt: Vec3, borne: Vec3, memory: &mut [f64]);
 
     /// Takes the forces of the body on points that are held, by row [N].
     fn note_forces(&self, forces: &[Vec3], memory: &mut [f64]);
@@ -254,7 +254,9 @@ impl HeldPoints {
             let Some(holding) = system.forces[*index].holding() else { continue };
             let points = &mut self.points[range.clone()];
             let memory = &mut state.memory[system.memory_range(*index)];
-            holding.feel(points.iter().map(|point| point.free * point.force * point.share).sum(), memory);
+            let borne = points.iter().map(|point| (point.free * point.force, point.share));
+            let felt = borne.clone().map(|(force, share)| force * share).sum();
+            holding.feel(felt, borne.map(|(force, _)| force).sum(), memory);
             let pace = holding.pace(timestep, memory);
             points.iter_mut().for_each(|point| point.velocity = point.displacement * pace);
         }

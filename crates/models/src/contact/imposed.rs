@@ -62,11 +62,12 @@ pub struct ImposedContact {
     period: f64,
 }
 
-/// What is felt, before the memory of what carries the tool: the force, its greatest change since the last look, and whether
-/// displacements are made.
-const HEAD: usize = 5;
+/// What is felt, before the memory of what carries the tool: the force, its greatest change since the last look, whether
+/// displacements are made, and what all points bear that are held.
+const HEAD: usize = 8;
 const JUMP: usize = 3;
 const IS_MADE: usize = 4;
+const BORNE: usize = 5;
 
 /// What a point of the surface has been told, and what it bore.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -385,13 +386,14 @@ impl Holding for ImposedContact {
         self.law.felt
     }
 
-    fn feel(&self, force: Vec3, memory: &mut [f64]) {
+    fn feel(&self, felt: Vec3, borne: Vec3, memory: &mut [f64]) {
         let before = Self::force(memory);
-        let larger = force.length().max(before.length());
+        let larger = felt.length().max(before.length());
         if larger > 0.0 {
-            memory[JUMP] = memory[JUMP].max((force - before).length() / larger);
+            memory[JUMP] = memory[JUMP].max((felt - before).length() / larger);
         }
-        memory[..3].copy_from_slice(&force.to_array());
+        memory[..3].copy_from_slice(&felt.to_array());
+        memory[BORNE..HEAD].copy_from_slice(&borne.to_array());
     }
 
     fn note_forces(&self, forces: &[Vec3], memory: &mut [f64]) {
@@ -508,7 +510,8 @@ impl Force for ImposedContact {
 
     /// What is felt, shared out over the contact; evenly where that has no area.
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        let force = -Self::force(at.memory);
+        // the body bears it, whatever part is felt
+        let force = -Vec3::new(at.memory[BORNE], at.memory[BORNE + 1], at.memory[BORNE + 2]);
         let held = || self.nodes(at.memory).filter(|(_, node)| node.is_held);
         let (area, count) =
             held().fold((0.0, 0.0), |(area, count), (_, node)| (area + node.contact_area, count + 1.0));

@@ -149,13 +149,38 @@ fn jumps_are_known() {
     let mut setting = Setting::new("[0, 0, 0]", LAW);
     setting.look();
     for (force, jump) in [(2.0, 1.0), (1.0, 1.0)] {
-        setting.contact.feel(Vec3::Z * force, &mut setting.memory);
+        setting.contact.feel(Vec3::Z * force, Vec3::Z, &mut setting.memory);
         assert_eq!(setting.contact.jump(&setting.memory), jump);
     }
     setting.look();
-    setting.contact.feel(Vec3::Z * 0.75, &mut setting.memory);
-    setting.contact.feel(Vec3::Z * 0.9, &mut setting.memory);
+    setting.contact.feel(Vec3::Z * 0.75, Vec3::Z, &mut setting.memory);
+    setting.contact.feel(Vec3::Z * 0.9, Vec3::Z, &mut setting.memory);
     assert_eq!(setting.contact.jump(&setting.memory), 0.25);
+}
+
+/// The body bears all of a tool's force, of which the hand feels a weighed part: shared among points by what is in touch around them.
+#[test]
+fn the_body_bears_all_of_it() {
+    let mut setting = Setting::new("[0, 0, 0]", LAW);
+    setting.look();
+    setting.contact.feel(Vec3::Z * 0.25, Vec3::new(0.5, 0.0, 2.0), &mut setting.memory);
+    let velocities = setting.positions.clone();
+    let at = Configuration {
+        positions: &setting.positions,
+        velocities: &velocities,
+        time: 0.0,
+        load: 1.0,
+        memory: &setting.memory,
+        pairs: &[],
+        kept: souple_engine::KeptRef::default(),
+        driven: &[],
+        fields: &[],
+    };
+    let mut borne = Vec3::ZERO;
+    setting.contact.visit_contacts(&at, &mut |point| borne += point.normal_force + point.friction);
+    assert!((borne - Vec3::new(-0.5, 0.0, -2.0)).length() < 1e-15, "{borne:?}");
+    let felt = ImposedContact::force(&setting.memory);
+    assert_eq!(felt, Vec3::Z * 0.25);
 }
 
 /// By a penalty, a triangle of nine times the area is nine times as stiff, or as stiff as the other where all weigh alike.
