@@ -214,8 +214,11 @@ fn pins_are_not_felt() {
     assert!(depth > 1e-3 && pinned.iter().all(|part| *part == 0.0), "{pinned:?} {depth}");
 }
 
-/// Without the controller, whose part in the force is not one of the world.
-const FREELY: &str = "hands.right.passive=false";
+/// Without the controller, whose part in the force is not one of the world; and all that the slab bears is felt.
+const FREELY: [&str; 2] = [
+    "hands.right.passive=false",
+    "hands.right.touch={ detect = \"triangles\", response = \"imposed\", weigh = \"alike\" }",
+];
 
 /// What devices are given and what the world told, against the clock: the greatest force told [N], all ticks, and the periods made.
 fn felt_in_time(settings: &[&str], duration: f64) -> (Session, f64, Vec<Tick>, u64) {
@@ -233,7 +236,7 @@ fn felt_in_time(settings: &[&str], duration: f64) -> (Session, f64, Vec<Tick>, u
 /// from moment to moment no further than between two of these in a period, or than it fades. What was led replays without a clock.
 #[test]
 fn held_points_are_felt_against_the_clock() {
-    let (session, peak, ticks, periods) = felt_in_time(&[FREELY], 1.0);
+    let (session, peak, ticks, periods) = felt_in_time(&FREELY, 1.0);
     let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
     assert!(peak > 1e-2 && greatest > 0.5 * peak && greatest < peak * (1.0 + 1e-9), "{greatest} of {peak}");
     // up against a ball that comes down
@@ -244,7 +247,7 @@ fn held_points_are_felt_against_the_clock() {
     }
     let commands = session.world.log().to_vec();
     let options = Options { steps: Some(periods), commands, ..Options::default() };
-    let settings: Vec<&str> = SOON.into_iter().chain([FREELY]).collect();
+    let settings: Vec<&str> = SOON.into_iter().chain(FREELY).collect();
     let outcome = run(press(&settings), &options, &mut |_| Control::Continue).expect("a replay");
     assert_eq!(outcome.world.state(), session.world.state());
 }
@@ -252,7 +255,7 @@ fn held_points_are_felt_against_the_clock() {
 /// A device that is lost in the midst of pressing gives no force at once; when it is back the force grows within 200 ticks to what it is.
 #[test]
 fn held_points_are_felt_again() {
-    let lost = ["hands.right.device.lost_at=0.5", "hands.right.device.lost_for=0.2", FREELY];
+    let lost = ["hands.right.device.lost_at=0.5", "hands.right.device.lost_for=0.2", FREELY[0], FREELY[1]];
     let (_, peak, ticks, _) = felt_in_time(&lost, 1.2);
     let felt = ticks.iter().position(|tick| tick.force != Vec3::ZERO).expect("a force");
     let gone = ticks[felt..].iter().position(|tick| tick.force == Vec3::ZERO).expect("a loss");

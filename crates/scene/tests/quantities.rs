@@ -298,6 +298,11 @@ region = "y_max"
 motion = { formula = [0, "-0.1 * t", 0] }
 "#;
 
+const HOLDING: &str = r#"touch = { detect = "triangles", response = "imposed" }
+[systems.main]
+stepper = "symplectic_euler"
+"#;
+
 const ON_A_BONE: &str = r#"[bones.hand]
 [bodies.cube.frames]
 kind = "rigid"
@@ -411,6 +416,7 @@ fn every_quantity_is_measured() {
     let changing = CUBE.replace("neo_hookean", "linear") + CHANGING;
     let cube = "body = \"cube\"";
     let felt = format!("{CUBE}{FELT}");
+    let held = format!("{CUBE}{}{HOLDING}", FELT.replace("mass = \"50 g\"\n", ""));
     let led = format!("{CUBE}{ON_A_BONE}");
     let probed = [
         (CUBE, ""),
@@ -420,6 +426,7 @@ fn every_quantity_is_measured() {
         (LAYERED, cube),
         (GROUPED, cube),
         (&felt, "hand = \"right\""),
+        (&held, "hand = \"right\""),
         (&led, "body = \"cube\"\nbone = \"hand\""),
         (BALLS, "body = \"cube\""),
         (BALLS, "body = \"cube\"\nwithin = 1.3"),

@@ -433,10 +433,10 @@ impl File<'_> {
         let every = [energy, stress, differential, grouping];
         let uses = |word: &str| every.iter().any(|body| body.contains(word));
         line("use souple_math::{Mat3, Real, Vec3};\n");
+        line("use crate::materials::Parameters;");
         if uses("cofactor_differential(") {
             line("use crate::materials::invariants::cofactor_differential;");
         }
-        line("use crate::materials::Parameters;");
         let sums = fields.of_nodes().contains("weighted(") || fields.to_nodes().contains("weighted(");
         line(&format!(
             "use crate::solids::derived::{{DerivedElement, RestSamples{}}};\n",
