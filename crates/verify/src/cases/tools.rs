@@ -220,7 +220,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("on_slab", 2).taking(Statistic::Max),
         reference: 4.28e-3,
         source: "V-44: at most 1 % of the peak",
-        mutation: "world.gravity=[0, 0, 9.81]",
+        mutation: r#"probes.on_slab.quantity="hand.force""#,
         ..HELD
     },
     Case {
