@@ -233,7 +233,7 @@ fn faces_of_every_kind_are_pressed() {
     for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() == 2) {
         let positions = kind.regular();
         let rows: Vec<u32> = (0..).take(positions.len()).collect();
-        let face = PressedFace::new(kind, &rows).expect(kind.name());
+        let face = PressedFace::new(kind, &rows).unwrap();
         let pressure = Pressure::new("pressure", vec![face], Formula::constant(4.0)).unwrap();
         let setting = Setting::new(&pressure, positions.clone(), vec![Vec3::ZERO; positions.len()]);
         let net: Vec3 = setting.force(&pressure).into_iter().sum();
