@@ -1,5 +1,5 @@
-//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with
-//! the whole simulator in it.
+//! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with all
+//! that the crate stands on.
 
 mod crowds;
 mod hands;
