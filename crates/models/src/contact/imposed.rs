@@ -255,7 +255,11 @@ impl ImposedContact {
 
     /// What is felt [N]: of the body on the tool.
     pub fn force(memory: &[f64]) -> Vec3 {
-        Vec3::new(memory[0], memory[1], memory[2])
+        Self::vector(memory, 0)
+    }
+
+    fn vector(memory: &[f64], at: usize) -> Vec3 {
+        Vec3::new(memory[at], memory[at + 1], memory[at + 2])
     }
 
     fn places(&self, triangle: usize, at: &Configuration) -> [Vec3; 3] {
@@ -511,7 +515,7 @@ impl Force for ImposedContact {
     /// What is felt, shared out over the contact; evenly where that has no area.
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
         // the body bears it, whatever part is felt
-        let force = -Vec3::new(at.memory[BORNE], at.memory[BORNE + 1], at.memory[BORNE + 2]);
+        let force = -Self::vector(at.memory, BORNE);
         let held = || self.nodes(at.memory).filter(|(_, node)| node.is_held);
         let (area, count) =
             held().fold((0.0, 0.0), |(area, count), (_, node)| (area + node.contact_area, count + 1.0));
