@@ -1,7 +1,7 @@
 //! Coarser meshes of the same body: its surface filled anew with larger tetrahedra, of several sizes the best.
 //!
 //! A few tetrahedra more or less change the worst of them a lot (Debunne 2000, 5 §2.1). Of so few that the filling loses parts of the body, edges of a finer mesh
-//! collapse instead ([`crate::decimate`]), which keeps the surface nearer and makes worse tetrahedra.
+//! collapse instead (`decimate`), which keeps the surface nearer and makes worse tetrahedra.
 
 use std::borrow::Cow;
 
