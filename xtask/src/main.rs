@@ -48,6 +48,7 @@ const STEPS: &[Step] = &[
     Step { name: "licences", summary: "every dependency's licence is on the list", run: licences::check },
     Step { name: "format", summary: "rustfmt changes nothing", run: cargo::format },
     Step { name: "lint", summary: "clippy has nothing to say on any target", run: cargo::lint },
+    Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "build", summary: "the released program", run: program::build },
     Step {
         name: "claims",
@@ -60,7 +61,6 @@ const STEPS: &[Step] = &[
         summary: "every example in the documentation of the code",
         run: cargo::doc_tests,
     },
-    Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
     Step { name: "kernels", summary: "derived laws are what their texts say", run: kernels::check },
     Step {

@@ -287,12 +287,14 @@ fn fits_write_over_their_own_alone() {
         |out: &str| souple(["sweep", &study.display().to_string(), "--quiet", "--out", &folder.at(out)]);
     sweep("found.csv").ends(0);
     sweep("found.csv").ends(0);
-    for (name, text) in
-        [("notes.txt", "do not lose, this, text\n"), ("study.sqlite", "SQLite format 3\0\x10")]
-    {
+    for (name, text) in [
+        ("notes.txt", "do not lose, this, text\n"),
+        ("study.sqlite", "SQLite format 3\0\x10"),
+        ("mine.csv", "day,measured,by whom\n1,2,3\n"),
+    ] {
         folder.write(name, text);
         let refused = sweep(name).ends(2);
-        assert!(refused.stderr.contains("no curve of a fit; expected a new file"), "{}", refused.stderr);
+        assert!(refused.stderr.contains("expected a new file in `--out`"), "{}", refused.stderr);
         assert_eq!(std::fs::read_to_string(folder.at(name)).unwrap(), text);
     }
     let scene = common::scenes().join("rheometer").display().to_string();

@@ -24,6 +24,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
     ("dough", include_str!("../../../scenes/dough/scene.toml")),
+    ("drops_on_a_floor", include_str!("../../../scenes/drops_on_a_floor/scene.toml")),
     ("drum", include_str!("../../../scenes/drum/scene.toml")),
     ("elastic_kernel", include_str!("../../../scenes/elastic_kernel/scene.toml")),
     ("equal_duals", include_str!("../../../scenes/equal_duals/scene.toml")),

@@ -19,6 +19,7 @@ mod pyramid;
 mod quadrilateral;
 mod tetrahedron;
 mod triangle;
+mod unstrained;
 
 use std::fmt;
 use std::sync::LazyLock;

@@ -349,9 +349,15 @@ impl TextLaw {
     /// Bulk modulus at rest and, over all directions, the mean shear modulus [Pa]; what is nothing but rounding is zero.
     pub(crate) fn bulk_and_shear(&self) -> [f64; 2] {
         let stiffness = &self.derived.stiffness;
-        let largest = stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        let rounding = self.modulus_rounding();
         [law::bulk_modulus(stiffness), law::mean_shear_modulus(stiffness)]
-            .map(|modulus| if modulus.abs() <= MODULUS_ROUNDING * largest { 0.0 } else { modulus })
+            .map(|modulus| if modulus.abs() <= rounding { 0.0 } else { modulus })
+    }
+
+    /// How large a modulus at rest must be to be told from rounding [Pa].
+    pub(crate) fn modulus_rounding(&self) -> f64 {
+        let stiffness = self.derived.stiffness.iter();
+        MODULUS_ROUNDING * stiffness.fold(0.0, |most: f64, entry| most.max(entry.abs()))
     }
 
     /// The law of small strain with the stiffness at rest, `Ψ = 1/2 ε : C : ε`, where that is not the same in all directions.

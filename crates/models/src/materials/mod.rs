@@ -191,6 +191,14 @@ impl Material {
         }
     }
 
+    /// How large a modulus of [`Self::bulk_and_shear`] must be to be told from the rounding of the others [Pa].
+    pub fn modulus_rounding(&self) -> f64 {
+        match &self.law {
+            MaterialLaw::Known(_) => 0.0,
+            MaterialLaw::Text(law) => law.modulus_rounding(),
+        }
+    }
+
     /// The numbers as the law `L` takes them.
     pub fn parameters_of<L: Law>(&self) -> L::Parameters<f64> {
         L::Parameters::unpack(|i| self.parameters[i])

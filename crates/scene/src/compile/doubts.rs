@@ -5,7 +5,7 @@ use souple_engine::linear::Method;
 use souple_mesh::USUAL_SIZES;
 use souple_mesh::repair::diagnose;
 use souple_models::materials::{Build, Material};
-use souple_table::{Value, four_digits, readable};
+use souple_table::{Value, counted, four_digits, readable};
 
 use super::bodies::Placed;
 use super::{Draft, contact};
@@ -49,6 +49,7 @@ pub fn warn(draft: &mut Draft) {
                 four_digits(size)
             ));
         }
+        warnings.extend(unstrained(body).map(|doubt| format!("{}: {doubt}", draft.place(&body.spec.site))));
         let is_linear = body.mesh.blocks.iter().any(|block| block.kind.is_linear());
         for (chosen, material) in materials(body.spec) {
             let doubts = of_material(&material, locking_of(body, is_linear));
@@ -69,6 +70,27 @@ pub fn warn(draft: &mut Draft) {
         }
     }
     draft.warnings.extend(warnings);
+}
+
+/// Of what chosen rules of quadrature see too little.
+fn unstrained(body: &Placed) -> impl Iterator<Item = String> {
+    let is_solid = body.spec.material.is_some() && body.frames.is_none();
+    body.mesh.blocks.iter().filter(move |_| is_solid).filter_map(|block| {
+        let rule = body.spec.quadrature.rule(block.kind);
+        let motions = block.kind.unstrained_motions(rule);
+        (motions > 0).then(|| {
+            format!(
+                "body `{}`: the points of `{}` do not see {} of a `{}` that is held by a face, so that nothing resists {}; choose a rule of \
+                 more points, such as {}",
+                body.spec.name,
+                rule.name,
+                counted(motions as u64, "motion"),
+                block.kind.name(),
+                if motions == 1 { "it" } else { "them" },
+                block.kind.default_rule().name
+            )
+        })
+    })
 }
 
 /// What does work that the monitor of energy knows nothing of.
@@ -139,7 +161,14 @@ fn gives_way(material: &Material) -> Option<(String, &'static str)> {
     let [bulk, shear] = material.bulk_and_shear();
     let lacks = |modulus: f64| modulus.is_nan() || modulus <= 0.0;
     let told = |what: &str, modulus: f64, name: &str| {
-        format!("at rest this energy does not resist {what}: its {name} modulus is {} Pa", readable(modulus))
+        // beside what is far stiffer a small modulus may be meant and not be seen
+        let lost = if modulus == 0.0 {
+            format!(", to the rounding of its largest stiffness ({:.0e} Pa)", material.modulus_rounding())
+        } else {
+            String::new()
+        };
+        let modulus = readable(modulus);
+        format!("at rest this energy does not resist {what}: its {name} modulus is {modulus} Pa{lost}")
     };
     if lacks(shear) {
         let expected = "a term that grows with the square of every shear, such as mu/2*(I1_bar - 3)";

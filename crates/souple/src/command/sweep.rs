@@ -132,7 +132,9 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     }
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("fit.csv"));
     keep_inputs(&out, [&arguments.study, &study.scene, &fit.curve_file])?;
-    keep_others(&out)?;
+    let abscissa = fit.over.as_ref().map_or("time [s]", |over| over.name.as_str());
+    let names = [abscissa, MEASURED, &fit.probe.name];
+    keep_others(&out, names)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
@@ -145,9 +147,8 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     drop(meter);
     let Some(found) = found else { return Ok(End::Interrupted) };
     let column =
-        |name: &str, index: usize| Column::new(name, found.curve.iter().map(|point| point[index]).collect());
-    let abscissa = fit.over.as_ref().map_or("time [s]", |over| over.name.as_str());
-    let columns = [column(abscissa, 0), column(MEASURED, 1), column(&fit.probe.name, 2)];
+        |index: usize| Column::new(names[index], found.curve.iter().map(|point| point[index]).collect());
+    let columns = [column(0), column(1), column(2)];
     souple_io::write_csv(&out, &columns)?;
     let of_values = fit.unknowns.iter().zip(&found.values);
     let alike: Vec<&str> = found.alike.iter().map(|index| fit.unknowns[*index].path.as_str()).collect();
@@ -230,8 +231,8 @@ fn keep_inputs(out: &Path, inputs: [&PathBuf; 3]) -> Result<(), Refusal> {
 /// The name of the second column of what a fit writes.
 const MEASURED: &str = "measured";
 
-/// Refuses to write over what no fit has written, among it the results of other studies.
-fn keep_others(out: &Path) -> Result<(), Refusal> {
+/// Refuses to write over what no fit of these columns has written, among it the results of other studies.
+fn keep_others(out: &Path, names: [&str; 3]) -> Result<(), Refusal> {
     use std::io::Read as _;
     let Ok(file) = std::fs::File::open(out) else { return Ok(()) };
     let mut head = Vec::new();
@@ -240,14 +241,16 @@ fn keep_others(out: &Path) -> Result<(), Refusal> {
         return Ok(());
     }
     let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
-    if String::from_utf8_lossy(line).contains(&format!(",{MEASURED},")) {
+    let columns = names.map(souple_io::csv_cell).join(",");
+    if String::from_utf8_lossy(line).trim_end() == columns {
         return Ok(());
     }
     let found = out.display().to_string();
     let message = format!(
-        "{found} is there, and no curve of a fit; expected a new file in `--out`, or one that a fit has written"
+        "{found} is there, and no curve of this fit, whose columns are {columns}; expected a new file in `--out`, or one that this fit has \
+         written"
     );
-    Err(Refusal::request("option", found, "a new file, or one that a fit has written", message))
+    Err(Refusal::request("option", found, "a new file, or one that this fit has written", message))
 }
 
 /// Columns under each other.

@@ -35,6 +35,18 @@ const STACK: Case = Case {
     ..OSCILLATOR
 };
 
+/// A fluid of balls that a finger has pressed into.
+const FLUID: Case = Case {
+    capabilities: &["JIM-31"],
+    scene: "medium",
+    reading: Reading::last("relief"),
+    reference: 0.6,
+    tolerance: Tolerance::AtMost,
+    source: "EXP-03: level again after a slow press of 3 S, the root of the mean square of heights at most 0.6 S",
+    mutation: "parameters.cohesion=3000",
+    ..OSCILLATOR
+};
+
 /// How far the surface of a figure is from its balls where it is farthest; nothing moves.
 macro_rules! mould_is_full {
     ($id:literal, $probe:literal, $radius:literal, $held:literal) => {
@@ -200,28 +212,39 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "fluid_is_level",
-        capabilities: &["JIM-31"],
         what: "relief of a fluid of balls that attract each other by 50 N/m, in columns of a ball, after a finger has pressed into it by three diameters and left",
-        scene: "medium",
-        reading: Reading::last("relief"),
-        reference: 0.6,
-        tolerance: Tolerance::AtMost,
-        source: "EXP-03: level again after a slow press of 3 S, the root of the mean square of heights at most 0.6 S",
-        mutation: "parameters.cohesion=3000",
-        ..OSCILLATOR
+        ..FLUID
     },
     Case {
         id: "fluid_is_level_sooner",
-        capabilities: &["JIM-31"],
         what: "the same at 20 N/m",
-        scene: "medium",
         settings: &["parameters.cohesion=20"],
-        reading: Reading::last("relief"),
-        reference: 0.6,
-        tolerance: Tolerance::AtMost,
-        source: "EXP-03: level again after a slow press of 3 S, the root of the mean square of heights at most 0.6 S",
-        mutation: "parameters.cohesion=3000",
-        ..OSCILLATOR
+        ..FLUID
+    },
+    Case {
+        id: "fluid_is_level_as_well",
+        what: "the same at 100 N/m",
+        settings: &["parameters.cohesion=100"],
+        ..FLUID
+    },
+    Case {
+        id: "fluid_stays_in_box",
+        what: "how far right any ball of a fluid was that a finger pressed out of its way: no farther than the wall",
+        reading: Reading::last("outermost").taking(Statistic::Max),
+        reference: 5.3,
+        source: "EXP-03: no mass escapes",
+        mutation: r#"contacts[2].stiffness="1 N/m""#,
+        ..FLUID
+    },
+    Case {
+        id: "fluid_waves_die",
+        what: "kinetic energy of a fluid five seconds after a finger left it: less than what lifts one ball by a hundredth of its diameter",
+        reading: Reading::last("kinetic"),
+        // m g S/100
+        reference: 0.0981,
+        source: "EXP-03: waves decay",
+        mutation: "networks.medium.crowds[0].law.damping=0",
+        ..FLUID
     },
     Case {
         id: "dough_keeps_imprint",
@@ -483,6 +506,31 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::AtLeast,
         source: "EXP-56: a drop rounds off",
         mutation: r#"networks.drop.links[0].law.push="0 * D""#,
+        ..OSCILLATOR
+    },
+    Case {
+        id: "skin_keeps_drop",
+        capabilities: &["JIM-36"],
+        what: "how far balls that fall on a floor run out in a skin, over how far the same balls run without one",
+        scene: "drops_on_a_floor",
+        reading: Reading::Ratio { of: "in_skin", to: "bare", component: 0 },
+        // without it they run out by more than the width that they fell with (`bare_drop_spreads`): with it by less than a quarter of that
+        reference: 0.25,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-56: the skin prevents spreading",
+        mutation: "parameters.skin=200",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "bare_drop_spreads",
+        capabilities: &["JIM-31", "JIM-36"],
+        what: "how far balls that fall on a floor run out without a skin [m]: by more than the width that they fell with",
+        scene: "drops_on_a_floor",
+        reading: Reading::last("bare"),
+        reference: 9.0,
+        tolerance: Tolerance::AtLeast,
+        source: "EXP-56: without a skin matter that clings weakly runs out",
+        mutation: "networks.bare.crowds[0].law.cohesion=2000",
         ..OSCILLATOR
     },
     Case {
