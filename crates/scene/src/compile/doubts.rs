@@ -80,8 +80,8 @@ fn unstrained(body: &Placed) -> impl Iterator<Item = String> {
         let motions = block.kind.unstrained_motions(rule);
         (motions > 0).then(|| {
             format!(
-                "body `{}`: the points of `{}` do not see {} of a `{}` that is held by a face, so that nothing resists {}; choose a rule of \
-                 more points, such as {}",
+                "body `{}`: the points of `{}` do not see {} of a `{}` that is held by one face alone, as in a bar one cell thick, and nothing \
+                 resists {} there; choose a rule of more points, such as `{}`",
                 body.spec.name,
                 rule.name,
                 counted(motions as u64, "motion"),

@@ -19,6 +19,8 @@ struct Poke {
     all_fine: &'static str,
     /// Periods until it is still, and of a quick look.
     periods: [u32; 2],
+    /// Whether ten times fewer points, at 5 % of the force and 2 % of the surface, are held.
+    is_promised: bool,
 }
 
 const BLOCK: Poke = Poke {
@@ -28,9 +30,11 @@ const BLOCK: Poke = Poke {
     settings: &[],
     all_fine: r#"bodies.block.levels={ coarser = [{ mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [6, 6, 3], element = "tet4" } }, { mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [12, 12, 6], element = "tet4" } }], fixed = "2" }"#,
     periods: [98, 60],
+    is_promised: true,
 };
 
-/// The tool of the surgical scene stays where it is, until the organ hangs still.
+/// The tool of the surgical scene stays where it is, until the organ hangs still. Its 2,075 finest points leave less to save than the block's, and what
+/// is saved and what it costs are printed.
 const LIVER: Poke = Poke {
     name: "adaptive_saving_liver",
     scene: "surgical",
@@ -42,6 +46,7 @@ const LIVER: Poke = Poke {
     ],
     all_fine: r#"bodies.liver.levels={ count = 3, ratio = 1.8, fixed = "2", dress = { blend = "200 ms" } }"#,
     periods: [250, 80],
+    is_promised: false,
 };
 
 /// What is read while the tool is held.
@@ -84,8 +89,8 @@ impl Poke {
         })
     }
 
-    /// All fine over adaptive, twice: beside the error of the force, and of the surface over the size of the body.
-    fn figures(&self, effort: Effort) -> Result<[Figure; 2], String> {
+    /// All fine over adaptive, and what that costs: the errors of the force, and of the surface over the size of the body.
+    fn figures(&self, effort: Effort) -> Result<[Figure; 3], String> {
         let [still, quick] = self.periods;
         let periods = effort.choose(quick, still);
         let adaptive = self.hold(&[], periods)?;
@@ -93,25 +98,32 @@ impl Poke {
         let force = distance(adaptive.force, fine.force) / distance(fine.force, [0.0; 3]);
         let surface = adaptive.surface.iter().zip(&fine.surface).map(|(a, b)| distance(*a, *b));
         let surface = surface.fold(0.0, f64::max) / fine.size;
-        let figure = |name: String, error: f64, error_of: &str| Figure {
+        let saving = Figure {
             by_processor: None,
-            name,
+            name: self.name.to_owned(),
             value: fine.active / adaptive.active,
             unit: "active points all-fine / adaptive",
             higher_is_better: true,
-            error,
-            error_of: error_of.to_owned(),
-            baseline: Some(10.0),
+            error: force,
+            error_of: "tool force, against all fine".to_owned(),
+            baseline: self.is_promised.then_some(10.0),
             threads: 1,
             samples: 1,
             spread: 0.0,
             bytes: adaptive.bytes,
         };
-        let farthest = "surface, the farthest point over the size of the body";
-        Ok([
-            figure(self.name.to_owned(), force, "tool force, against all fine"),
-            figure(format!("{}_surface", self.name), surface, farthest),
-        ])
+        let cost = |what: &str, error: f64, most: f64| Figure {
+            name: format!("{}_{what}", self.name),
+            value: error,
+            unit: "x all fine",
+            higher_is_better: false,
+            error,
+            error_of: format!("{what}, against all fine"),
+            baseline: self.is_promised.then_some(most),
+            ..saving.clone()
+        };
+        let (force, surface) = (cost("force", force, 0.05), cost("surface", surface, 0.02));
+        Ok([saving, force, surface])
     }
 }
 
