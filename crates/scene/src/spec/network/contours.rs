@@ -41,6 +41,9 @@ pub(super) static CONTOUR: Keys = Keys::new(
 /// Steps in what a ball reaches, at most.
 const STEPS_MAX: f64 = 1000.0;
 
+/// The name that no contour has.
+const WORN: &str = "skin";
+
 /// Where an object ends.
 #[derive(Clone, Debug)]
 pub struct ContourSpec {
@@ -67,6 +70,12 @@ impl ContourSpec {
         let refuse = |key: &str, message: &str, expected: &str| {
             reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
         };
+        // frames and pictures tell a contour `NETWORK.NAME`, and what dresses the network `NETWORK.skin`
+        if name == WORN {
+            let message = "a contour `skin` has the name that frames and pictures give to what dresses a network";
+            reader.log().add(Code::Conflict, &reader.site(), message, "another name, say `outline`");
+            return None;
+        }
         let written = reader.written(&["through", "skin", "frontier", "scan"]);
         let [way] = written[..] else {
             let message = format!("a contour is told in one way, this one in {}", written.len());
