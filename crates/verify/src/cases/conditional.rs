@@ -13,6 +13,9 @@ const WORDS: Case = Case {
     ..OSCILLATOR
 };
 
+/// On beyond an edge of its dead zone, either way, and off again nearer to the middle.
+const THREE_WAY_RELAY: &str = r#"networks.sample.links[0].law={ name = "finite_state", states = { off = "0", pulls = "-5", pushes = "5" }, transitions = { "off -> pulls" = "D - L0 > 0.012", "pulls -> off" = "D - L0 < 0.003", "off -> pushes" = "D - L0 < -0.012", "pushes -> off" = "D - L0 > -0.003" } }"#;
+
 const SWITCHED: Case = Case {
     capabilities: &["JIM-13"],
     scene: "network_switched",
@@ -195,6 +198,52 @@ pub(super) const CASES: &[Case] = &[
         reference: 5.0,
         source: "specification §2.8.2: a loop needs memory",
         mutation: r#"networks.sample.links[0].law.transitions={ "low -> high" = "D > 1.012", "high -> low" = "D < 1.005" }"#,
+        ..WORDS
+    },
+    Case {
+        id: "three_way_relay_waits",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "a relay with a dead zone and hysteresis, on from 12 mm either way and off again at 3 mm: at 10 mm on the way there nothing",
+        settings: &[THREE_WAY_RELAY],
+        reading: PULL.after(2),
+        reference: 0.0,
+        source: "specification §2.8.2: relay, dead zone and hysteresis",
+        mutation: r#"networks.sample.links[0].law.transitions={ "off -> pulls" = "D - L0 > 0.009", "pulls -> off" = "D - L0 < 0.003", "off -> pushes" = "D - L0 < -0.012", "pushes -> off" = "D - L0 > -0.003" }"#,
+        ..WORDS
+    },
+    Case {
+        id: "three_way_relay_holds",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "the same at 10 mm on the way back: 5 N still",
+        settings: &[THREE_WAY_RELAY],
+        reading: PULL.after(9),
+        reference: 5.0,
+        source: "specification §2.8.2: relay, dead zone and hysteresis",
+        // without hysteresis
+        mutation: r#"networks.sample.links[0].law.transitions={ "off -> pulls" = "D - L0 > 0.012", "pulls -> off" = "D - L0 < 0.012", "off -> pushes" = "D - L0 < -0.012", "pushes -> off" = "D - L0 > -0.003" }"#,
+        ..WORDS
+    },
+    Case {
+        id: "three_way_relay_pushes",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "the same on the way back from -20 mm, at -10 mm: 5 N the other way",
+        settings: &[THREE_WAY_RELAY],
+        reading: PULL.after(13),
+        reference: -5.0,
+        source: "specification §2.8.2: relay, dead zone and hysteresis",
+        mutation: r#"networks.sample.links[0].law.transitions={ "off -> pulls" = "D - L0 > 0.012", "pulls -> off" = "D - L0 < 0.003", "off -> pushes" = "D - L0 < -0.012", "pushes -> off" = "D - L0 > -0.012" }"#,
+        ..WORDS
+    },
+    Case {
+        id: "three_way_relay_is_dead_again",
+        capabilities: &["JIM-16", "JIM-18", "JIM-19"],
+        what: "and off again, at 10 mm on the way there for the second time, after it has pulled and pushed",
+        settings: &[THREE_WAY_RELAY],
+        reading: PULL.after(15),
+        reference: 0.0,
+        source: "specification §2.8.2: relay, dead zone and hysteresis",
+        // a relay without a dead zone: from one side to the other
+        mutation: r#"networks.sample.links[0].law.transitions={ "off -> pulls" = "D - L0 > 0.012", "pulls -> off" = "D - L0 < 0.003", "off -> pushes" = "D - L0 < -0.012", "pushes -> off" = "D - L0 > 0.012" }"#,
         ..WORDS
     },
     Case {

@@ -26,6 +26,18 @@ const DRY: &str = "networks.belt.crowds[0].friction={ static = 0.6, kinetic = 0.
 /// Places that are as good as random.
 const SHAKEN: &str = r#"networks.group.start={ displacement = ["0.4 * sin(97 * x + 131 * z)", 0, "0.4 * sin(71 * x + 53 * z)"] }"#;
 
+/// A belt that runs to and fro by a decimetre, at 5 mm/s, under a mass on a spring and damper.
+const REVERSED: Case = Case {
+    capabilities: &["JIM-45", "JIM-46", "JIM-48"],
+    scene: "bow",
+    settings: &[
+        DRY,
+        r#"networks.belt.links[0].law={ name = "spring_damper", stiffness = 100, damping = 20 }"#,
+        "networks.belt.pins[0].motion={ times = [0, 20, 60, 100, 140, 180], offsets = [[0, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0.1, 0, 0], [-0.1, 0, 0], [0.1, 0, 0]] }",
+    ],
+    ..OSCILLATOR
+};
+
 const STACK: Case = Case {
     capabilities: &["JIM-21", "JIM-46", "JIM-47"],
     scene: "brick_stack",
@@ -622,6 +634,53 @@ pub(super) const CASES: &[Case] = &[
         source: "EXP-39: plateau μ_c N",
         mutation: "networks.belt.crowds[0].friction.kinetic=0.301",
         ..OSCILLATOR
+    },
+    Case {
+        id: "turned_hook_holds_up_to_its_peak",
+        what: "place of a mass on a belt that runs to and fro, farthest back: it slid, stuck as the belt turned, and is carried to where spring and damper pull by 0.6 of 10 N the other way",
+        reading: Reading::last("place").taking(Statistic::Min).after(6000),
+        // (6 N - 20 N s/m 5 mm/s)/(100 N/m)
+        reference: -0.059,
+        // it is looked at every 50 µm; a step more on its way, and the lean of the belt, a micrometre each
+        tolerance: Tolerance::Absolute(5.2e-5),
+        source: "EXP-39: peak μ_s N, cycles of sticking again",
+        mutation: "networks.belt.crowds[0].friction.static=0.602",
+        ..REVERSED
+    },
+    Case {
+        id: "turned_hook_slides_on_its_plateau",
+        what: "the same when it has slid since: the spring pulls by 0.3 of 10 N the other way",
+        reading: Reading::last("place").after(6000),
+        reference: -0.03,
+        // the belt, a ball of 10 km a decimetre aside, leans by 1e-5
+        tolerance: Tolerance::Absolute(2e-6),
+        source: "EXP-39: plateau μ_c N, after the load is reversed",
+        mutation: "networks.belt.crowds[0].friction.kinetic=0.301",
+        ..REVERSED
+    },
+    Case {
+        id: "turned_hook_is_elastic",
+        what: "the same on the next way there, stuck for ten seconds: 50 mm from its plateau, and where the belt was half a cycle before it slid; its hook and spring in series",
+        reading: Reading::last("place").after(7000),
+        // K_t (50 - 30) mm = (K_t + k) x + z v
+        reference: (2000.0 - 0.1) / 100_100.0,
+        // the belt leans by 1e-5 at most, at its turn and here
+        tolerance: Tolerance::Absolute(2e-6),
+        source: "EXP-39: slope K_t of the hook; F_t = -K_t D_acc (specification §2.14.3)",
+        mutation: "networks.belt.crowds[0].friction.stiffness=90000",
+        ..REVERSED
+    },
+    Case {
+        id: "cycle_of_hook_is_closed",
+        what: "the same a cycle of the belt later, over where it was",
+        reading: Reading::last("place").taking(Statistic::LastOver(7000)).after(15_000),
+        reference: 1.0,
+        // virtual points of one step or the next: 2.5 µm of 20 mm
+        tolerance: Tolerance::Absolute(1.25e-4),
+        source: "EXP-39: cycles of hysteresis, closed",
+        // farther back in the second cycle
+        mutation: "networks.belt.pins[0].motion.offsets[4]=[-0.11, 0, 0]",
+        ..REVERSED
     },
     Case {
         id: "bow_sticks_and_slips",

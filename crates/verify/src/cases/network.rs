@@ -1,7 +1,7 @@
 //! Masses and links: the recurrence of a mass, oscillators step by step, momenta, friction, multitudes, modes of lines and
 //! surfaces.
 
-use crate::{Case, Reading, Statistic, Tolerance};
+use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
 
 pub(super) const OSCILLATOR: Case = Case {
     id: "",
@@ -25,6 +25,10 @@ const FREE: &str = r#"networks.oscillator.links[0].law={ name = "spring", stiffn
 const STILL: &str = "networks.table.masses.book.velocity=[0, 0, 0]";
 const IMPULSE: &str =
     r#"networks.oscillator.loads=[{ region = "bob", force = ["if(t > 0.15 and t < 0.25, 10, 0)", 0, 0] }]"#;
+
+/// A stiffness of M/(Te² 4 sin²(10 π/22)), with which 2 - κ λ is one.
+const SIXTH_OF_A_TURN: &str =
+    r#"networks.line.links[0].law={ name = "spring_damper", stiffness = 273984606.84943587, damping = 0 }"#;
 
 const MODE: Case = Case {
     scene: "vibrating_modes",
@@ -66,6 +70,9 @@ const THROWN: [&str; 3] = [
     r#"networks.lattice.links[0].law={ name = "elasto_plastic", stiffness = 100, hardening = 25, traction = 0.05, rupture = 0.12 }"#,
     r#"networks.lattice.crowds=[{ law = { name = "ball", threshold = 0.098, stiffness = 100, damping = 0.01 } }]"#,
 ];
+
+/// Twice what the line to a mass sweeps in a step, 2 L Te/m: D D_before sin θ.
+const PROJECTED: &str = r#"networks.pair.links[0].law={ name = "formula", push = "-k * (D - L0) - z / period * (D - D_before * sqrt(1 - (twice_swept / (D * D_before))^2))", parameters = { k = 2000, z = 20, period = 0.01, twice_swept = 0.03 } }"#;
 
 const NANONEWTON: &str = r#"networks.lattice.loads=[{ region = "lower", force = ["1e-9", 0, 0] }]"#;
 
@@ -173,6 +180,29 @@ pub(super) const CASES: &[Case] = &[
         ..OSCILLATOR
     },
     Case {
+        id: "order_of_the_period",
+        capabilities: &["JIM-8"],
+        what: "order at which a damped oscillator in physical units tends to its trajectory as the period gets smaller, after 6 s",
+        refinement: Some(Refinement {
+            size_of: "period [s]",
+            runs: &[
+                Variant { size: 10e-3, settings: &[r#"world.period="10 ms""#] },
+                Variant { size: 5e-3, settings: &[r#"world.period="5 ms""#] },
+                Variant { size: 2.5e-3, settings: &[r#"world.period="2.5 ms""#] },
+            ],
+            // 0.1 (e^-0.6 (cos 6 ω + 0.1/ω sin 6 ω) - 1), ω² = 3.99
+            limit: Limit::Known(-0.055_644_368_244_838_475),
+        }),
+        reading: Reading::component("place", 0),
+        reference: 1.0,
+        // errors of 0.0002 (1 + h s⁻¹): h/(2 ln 2) of the finer pair
+        tolerance: Tolerance::Absolute(0.01),
+        source: "JIM-8: changing Te leaves the trajectory unchanged up to O(Te)",
+        // of another trajectory: what is left of the error does not fall
+        mutation: "networks.oscillator.links[0].law.stiffness=4.001",
+        ..OSCILLATOR
+    },
+    Case {
         id: "network_stable",
         capabilities: &["JIM-94"],
         what: "displacement after 100 steps at κ = 1, ζ = 1.49, just below K + 2Z = 4M",
@@ -203,7 +233,7 @@ pub(super) const CASES: &[Case] = &[
         // 2 r (1 - cos θ) m = Te² k (2 r - 1), 2 m r² sin θ = L Te: v = 2 r sin(θ/2)/Te
         reference: 2.240_473_723_679_317_5,
         tolerance: Tolerance::Relative(1e-10),
-        source: "steady turning in discrete time; a damper along the projected velocity would brake it",
+        source: "steady turning in discrete time; EXP-50: a damper of distances does not act on it",
         mutation: "networks.pair.links[0].law.stiffness=1990",
         ..OSCILLATOR
     },
@@ -218,6 +248,38 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(1e-12),
         source: "axial forces keep Σ M X_n ∧ X_{n+1} (specification §2.5)",
         mutation: "networks.pair.angular_velocity=[0, 0, 3.01]",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "projected_velocity_pulls",
+        capabilities: &["JIM-6"],
+        what: "kinetic energy of the same with a damper along the projected velocity, (D - D_before cos θ)/Te, which a turn does not leave alone: as its masses keep their spin, 0.03 m²/2 = D D_before sin θ/2, it draws them together all the time, and they turn faster",
+        scene: "network_spin",
+        settings: &[PROJECTED],
+        reading: Reading::last("turning"),
+        // 2 r (1 - cos θ) (m - z Te) = Te² k (2 r - 1), 2 m r² sin θ = L Te: v = 2 r sin(θ/2)/Te
+        reference: 2.242_464_222_534_651,
+        tolerance: Tolerance::Relative(1e-10),
+        source: "specification §2.5: the projected velocity is (D - cos θ D_before)/Te, not zero where D = D_before",
+        // the lengths' own rate
+        mutation: "networks.pair.links[0].law.parameters.twice_swept=0",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "damper_of_velocities_loses_spin",
+        capabilities: &["JIM-6"],
+        what: "spin of the same where dampers act on the whole of the velocity, along x and along y, in the place of that along the line",
+        scene: "network_spin",
+        settings: &[
+            r#"networks.pair.links=[{ law = { name = "spring", stiffness = 2000 }, chain = true }, { law = { name = "damper", damping = 0.02 }, chain = true, along = [1, 0, 0] }, { law = { name = "damper", damping = 0.02 }, chain = true, along = [0, 1, 0] }]"#,
+        ],
+        reading: Reading::component("spin", 2),
+        // 1.5 (1 - 2 z Te/m)^2000
+        reference: 0.673_885_587_090_078_8,
+        // rounding of 2000 steps
+        tolerance: Tolerance::Relative(1e-12),
+        source: "EXP-50: other dampers lose spin; X ∧ X' of each step is 1 - 2 z Te/m of that of the step before",
+        mutation: r#"networks.pair.links=[{ law = { name = "spring", stiffness = 2000 }, chain = true }, { law = { name = "damper", damping = 0.02 }, chain = true }]"#,
         ..OSCILLATOR
     },
     Case {
@@ -430,6 +492,20 @@ pub(super) const CASES: &[Case] = &[
         what: "the same in the third mode",
         settings: &["parameters.p=3"],
         reference: 0.000_536_081_331_711_372_8,
+        ..MODE
+    },
+    Case {
+        id: "line_keeps_its_energy",
+        capabilities: &["JIM-94", "JIM-91"],
+        what: "energy of a line of ten masses in its tenth mode after 99,998 steps, over that after two, where the mode turns by 60° a step: a third of a step later and sooner it is the same, so that the phase is not in it",
+        settings: &["parameters.p=10", "networks.surface.start={ displacement = [0, 0, 0] }", SIXTH_OF_A_TURN],
+        reading: Reading::last("energy").taking(Statistic::LastOver(2)).after(99_998),
+        reference: 1.0,
+        // rounding of each step, as chance adds it up: √100000 ε
+        tolerance: Tolerance::Absolute(7e-14),
+        source: "specification §2.5: M (X - X_before)²/2 + X K X_before/2 is constant to rounding, 2e-14 in 100,000 steps [V]",
+        // a billionth of a newton second per metre
+        mutation: "networks.line.links[0].law.damping=1e-9",
         ..MODE
     },
     Case {

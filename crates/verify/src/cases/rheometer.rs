@@ -251,6 +251,21 @@ pub(super) const CASES: &[Case] = &[
         ..BINGHAM
     },
     Case {
+        id: "rheometer_bingham_rest_length",
+        what: "led back to the rest length that the flow has left, 1.3215958547499518 m, the paste bears nothing",
+        settings: &[
+            TE,
+            PASTE,
+            "networks.sample.pins[0].motion={ times = [0, 0.6633333333333333, 1.33, 1.3333333333333333], offsets = [[0, 0, 0], [-0.33166666666666667, 0, 0], [-0.33166666666666667, 0, 0], [-0.3215958547499518, 0, 0]] }",
+        ],
+        reading: PULL.after(400),
+        reference: 0.0,
+        // places of a metre, rounding of 399 steps times k
+        tolerance: Tolerance::Absolute(1e-10),
+        source: "specification §8.1, Bingham: rest length after",
+        ..BINGHAM
+    },
+    Case {
         id: "rheometer_bingham_is_maxwell",
         what: "without a threshold the paste is Maxwell's fluid",
         capabilities: &["JIM-54"],
@@ -469,6 +484,17 @@ pub(super) const CASES: &[Case] = &[
         what: "an elasto-plastic link pulled to 1.020 m",
         reading: PULL.after(4),
         reference: 12.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_table_in_one_step",
+        what: "a plastic link led from its limit at 1.010 m to 1.030 m in one step: what three steps come to",
+        settings: &[
+            "networks.sample.pins[0].motion={ times = [0, 0.01, 0.02, 0.03], offsets = [[0, 0, 0], [-0.005, 0, 0], [-0.01, 0, 0], [-0.03, 0, 0]] }",
+        ],
+        reading: PULL.after(3),
+        reference: 14.0,
+        source: "specification §8.1: refining the steps of a branch does not change its end; 1.010 to 1.030 in one step gives 14",
         ..PLASTIC
     },
     Case {
