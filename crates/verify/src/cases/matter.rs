@@ -38,6 +38,15 @@ const REVERSED: Case = Case {
     ..OSCILLATOR
 };
 
+/// A side of a plastic kernel that fell by ten metres.
+const SIDE: Case = Case {
+    capabilities: &["JIM-34", "JIM-90"],
+    scene: "plastic_kernel",
+    source: "EXP-34: sides of 2.25, 2.24 and 2.25 m become 2.24, 1.82 and 2.06 m [V], of another dermis",
+    mutation: "parameters.side.traction=100000",
+    ..OSCILLATOR
+};
+
 const STACK: Case = Case {
     capabilities: &["JIM-21", "JIM-46", "JIM-47"],
     scene: "brick_stack",
@@ -347,8 +356,36 @@ pub(super) const CASES: &[Case] = &[
         // a quarter of the strain
         tolerance: Tolerance::Absolute(0.155),
         source: "EXP-34: permanent strain of the kernel",
-        mutation: "networks.thing.links[0].law.traction=100000",
+        mutation: "parameters.side.traction=100000",
         ..OSCILLATOR
+    },
+    Case {
+        id: "kernel_keeps_its_floor",
+        what: "that side of the same, there and back, which lay level as it fell: it keeps its length",
+        reading: Reading::last("floor"),
+        // twice 2.24 m [V]
+        reference: 4.48,
+        tolerance: Tolerance::Relative(0.01),
+        mutation: "parameters.side.traction=500",
+        ..SIDE
+    },
+    Case {
+        id: "kernel_is_strained_right",
+        what: "its side on the right, there and back, the more strained one",
+        reading: Reading::last("right"),
+        // twice 1.82 m [V], a quarter of the strain
+        reference: 3.64,
+        tolerance: Tolerance::Absolute(0.21),
+        ..SIDE
+    },
+    Case {
+        id: "kernel_is_strained_left",
+        what: "its side on the left, there and back",
+        reading: Reading::last("left"),
+        // twice 2.06 m [V], a quarter of the strain
+        reference: 4.12,
+        tolerance: Tolerance::Absolute(0.095),
+        ..SIDE
     },
     Case {
         id: "kernel_is_strained_more",
