@@ -47,6 +47,12 @@ const SIDE: Case = Case {
     ..OSCILLATOR
 };
 
+/// Boards beside the dough that stay where they are.
+const NO_SIDES: &[&str] = &[
+    "shapes.left.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+    "shapes.right.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+];
+
 const STACK: Case = Case {
     capabilities: &["JIM-21", "JIM-46", "JIM-47"],
     scene: "brick_stack",
@@ -282,6 +288,33 @@ pub(super) const CASES: &[Case] = &[
         ..OSCILLATOR
     },
     Case {
+        id: "dough_rests_with_its_imprint",
+        capabilities: &["JIM-29", "JIM-39"],
+        what: "height of the same ten seconds after the board left it, where no others come from the sides: 60 % at least of the imprint, from 4.53 m to 2.10 m, is there",
+        scene: "dough",
+        settings: NO_SIDES,
+        reading: Reading::last("top").after(1500),
+        // 4.53 - 0.6 2.43
+        reference: 3.07,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-05: imprint after 10 s of rest more than 60 % of that at release",
+        mutation: "shapes.board.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -1], [0, 0, -1], [0, 0, 4]]",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "dough_changes_neighbours",
+        capabilities: &["JIM-29", "JIM-39"],
+        what: "share of the 407 bonds of the same at the start that are left then: fewer than the 380 that are left of a dough that no board presses, which only settles",
+        scene: "dough",
+        settings: NO_SIDES,
+        reading: Reading::last("kept").after(1500),
+        reference: 379.0 / 407.0,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-05: number of changes of neighbours above 0",
+        mutation: "shapes.board.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 4]]",
+        ..OSCILLATOR
+    },
+    Case {
         id: "powder_flies",
         capabilities: &["JIM-32"],
         what: "how high grains fly that a finger throws which leaves at 12 m/s: more than six diameters over the surface, and no higher than at twice its speed",
@@ -411,6 +444,32 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::AtLeast,
         source: "EXP-34: the dermis keeps its neighbours, 77 of 80 bonds [V]",
         mutation: "networks.thing.objects.thing.matter.cohesion=100",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "ground_is_full",
+        capabilities: &["JIM-38"],
+        what: "the widest gap between a height and the nearest of the balls that are moulded on it, as far as the mould goes: less than a radius, through which no grain of that radius passes",
+        scene: "moulded_ground",
+        reading: Reading::last("gap").after(1),
+        reference: 0.05,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-22: less than a radius from f everywhere, no hole larger than a wheel's mass",
+        mutation: "parameters.gaps=left",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "grains_rest_on_ground",
+        capabilities: &["JIM-38", "JIM-28"],
+        what: "kinetic energy of the grains that lie on it after six seconds: no more than one of them has at 1e-3 of a diameter a second",
+        scene: "moulded_ground",
+        reading: Reading::last("moving").after(600),
+        // 0.5 kg (1e-4 m/s)²/2
+        reference: 2.5e-9,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-22: the layer is at rest, no speed above 1e-3 S/s",
+        // without dampers between grains and ground
+        mutation: r#"networks.terrain.encounters=[{ law = { name = "ball", threshold = 0.1, stiffness = 20000 } }]"#,
         ..OSCILLATOR
     },
     Case {

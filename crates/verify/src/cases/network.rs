@@ -497,8 +497,12 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "line_keeps_its_energy",
         capabilities: &["JIM-94", "JIM-91"],
-        what: "energy of a line of ten masses in its tenth mode after 99,998 steps, over that after two, where the mode turns by 60° a step: a third of a step later and sooner it is the same, so that the phase is not in it",
-        settings: &["parameters.p=10", "networks.surface.start={ displacement = [0, 0, 0] }", SIXTH_OF_A_TURN],
+        what: "energy of a line of ten masses in its tenth mode after 99,998 steps, over that after two, where the mode turns by 60° a step: with X K X/2 in the place of X K X_before/2 it swings by half of itself, and is greatest at these steps, so that the phase is not in it",
+        settings: &[
+            "parameters.p=10",
+            "networks.surface.start={ displacement = [0, 0, 0] }",
+            SIXTH_OF_A_TURN,
+        ],
         reading: Reading::last("energy").taking(Statistic::LastOver(2)).after(99_998),
         reference: 1.0,
         // rounding of each step, as chance adds it up: √100000 ε

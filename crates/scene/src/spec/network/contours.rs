@@ -72,7 +72,8 @@ impl ContourSpec {
         };
         // frames and pictures tell a contour `NETWORK.NAME`, and what dresses the network `NETWORK.skin`
         if name == WORN {
-            let message = "a contour `skin` has the name that frames and pictures give to what dresses a network";
+            let message =
+                "a contour `skin` has the name that frames and pictures give to what dresses a network";
             reader.log().add(Code::Conflict, &reader.site(), message, "another name, say `outline`");
             return None;
         }
