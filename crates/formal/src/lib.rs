@@ -25,6 +25,7 @@ mod interval;
 pub mod law;
 mod lexer;
 mod parser;
+mod polynomial;
 mod program;
 mod quantity;
 mod span;

@@ -24,6 +24,7 @@ pub use constants::Grouped;
 pub use count::Operations;
 pub(crate) use evaluate::EQUAL_STRETCHES;
 pub use evaluate::{Evaluation, Tensor};
+pub(crate) use simplify::arithmetic_power;
 pub(crate) use spectral::STRETCHES;
 pub(crate) use substitute::Substitution;
 

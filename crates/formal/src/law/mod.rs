@@ -11,6 +11,7 @@ mod continued;
 mod domain;
 mod error;
 mod evaluate;
+mod expanded;
 mod operators;
 mod read;
 mod value;
@@ -19,6 +20,7 @@ mod vocabulary;
 pub use block::Block;
 pub use continued::SMALLEST_VOLUME;
 pub use error::{LawError, LawProblem, UnitClash, WantedUnits};
+pub use expanded::{Expanded, Expansion};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
 use crate::graph::{Expr, Graph, Grouped, Node, Shape};

@@ -5,7 +5,6 @@
 //! registers of a batch stay in the first-level cache. What does not vary with the deformation is computed once, when
 //! the tape is made: the grouped constants of the law.
 
-mod degree;
 pub(crate) mod lower;
 mod machine;
 mod registers;

@@ -1,28 +1,24 @@
 //! Texts that are laws of the table: bodies run them as those.
 //!
-//! Looked for are the laws of two moduli that have a value for every `F`. `linear` and `st_venant_kirchhoff` are polynomials of degree four at most
-//! in the nine entries of `F`, of which there are 715: a text that is one too, as its instructions tell, is the law with its own moduli
-//! at rest where both have the same energy at [`POINTS`] deformations, however it is written. The others are that where the text of the library gives
-//! the same instructions with the same numbers.
+//! Looked for are the laws of two moduli that have a value for every `F`. Their energies are linear in the moduli, so that a text is such a law
+//! where, multiplied out, it has the same number before every term as the text of the library with some moduli, however either is written.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
-use souple_formal::law::LawParameter;
-use souple_math::{Mat3, Vec3};
+use souple_formal::law::{Expanded, Expansion, LawParameter, LawText};
 
 use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw, WRITTEN_LAWS};
 
-/// Laws that are polynomials, with their degrees.
-const POLYNOMIALS: [(AnyLaw, u32); 2] = [(AnyLaw::Linear, 2), (AnyLaw::StVenantKirchhoff, 4)];
-/// Laws that are not, with the powers that they grow by.
-const OTHERS: [(AnyLaw, u32); 2] = [(AnyLaw::Corotational, 2), (AnyLaw::StableNeoHookean, 6)];
-const POINTS: u32 = 768;
-/// Points that show what is worth compiling for comparison.
-const FEW: u32 = 16;
-/// Of entries of `F - I`, in turn: terms of every degree are the greatest somewhere.
-const SIZES: [f64; 4] = [0.1, 0.5, 2.0, 20.0];
-/// Of the largest terms: an energy is a hundred operations, and moduli come of sums of a hundred of the second derivatives.
-const ROUNDING: f64 = 1e-13;
+/// The laws that are looked for.
+const SOUGHT: [AnyLaw; 4] =
+    [AnyLaw::Linear, AnyLaw::StVenantKirchhoff, AnyLaw::Corotational, AnyLaw::StableNeoHookean];
+
+/// Each of them multiplied out, what its energy has of `μ` and of `λ`; and what the variables of that stand for.
+static KNOWN: LazyLock<(Expansion, Vec<(AnyLaw, [Expanded; 2])>)> = LazyLock::new(|| {
+    let mut expansion = Expansion::default();
+    let known = SOUGHT.into_iter().filter_map(|law| Some((law, of_moduli(law, &mut expansion)?))).collect();
+    (expansion, known)
+});
 
 /// A law of the table with its moduli.
 type OfTable = (AnyLaw, Lame);
@@ -67,62 +63,33 @@ impl Material {
 
 impl TextLaw {
     fn law_of_table(&self) -> Option<OfTable> {
-        match self.energy().degree() {
-            Some(degree) if degree <= 4 => {
-                let moduli = self.small_strain();
-                let is_same =
-                    |(law, degree): &(AnyLaw, u32)| self.has_energy_of((*law, moduli), *degree, POINTS);
-                POLYNOMIALS.iter().find(|candidate| is_same(candidate)).map(|(law, _)| (*law, moduli))
-            }
-            // neither these laws nor the others
-            Some(_) => None,
-            None => self.other_of_table(),
-        }
-    }
-
-    fn has_energy_of(&self, (law, moduli): OfTable, degree: u32, points: u32) -> bool {
-        let known = Material::known(law, moduli, moduli, 1.0);
-        let modulus = 2.0 * moduli.mu.abs() + moduli.lambda.abs();
-        (0..points).all(|point| {
-            let F = deformation(point);
-            let largest = modulus * (1.0 + F.dot(&F)).sqrt().powi(degree as i32);
-            (self.energy_at(&F) - known.energy_density(&F)).abs() <= ROUNDING * largest
+        let (expansion, known) = &*KNOWN;
+        let energy = expansion.clone().of(self.text())?;
+        known.iter().find_map(|(law, [of_mu, of_lambda])| {
+            let [mu, lambda] = energy.as_sum_of([of_mu, of_lambda])?;
+            Some((*law, Lame { mu, lambda }))
         })
-    }
-
-    fn other_of_table(&self) -> Option<OfTable> {
-        let [(_, LawParameter::Number { value: a, .. }), (_, LawParameter::Number { value: b, .. })] =
-            self.text().parameters[..]
-        else {
-            return None;
-        };
-        let all = OTHERS.into_iter().flat_map(|law| [[a, b], [b, a]].map(|numbers| (law, numbers)));
-        all.filter_map(|((law, degree), [lambda, mu])| {
-            let moduli = Lame { mu, lambda };
-            // few are looked at more closely
-            if !self.has_energy_of((law, moduli), degree, FEW) {
-                return None;
-            }
-            let written = WRITTEN_LAWS.iter().find(|written| written.name == law.entry().name)?;
-            let mut text = written.text().ok()?;
-            for (name, parameter) in &mut text.parameters {
-                let LawParameter::Number { value, .. } = parameter else { return None };
-                *value = if name == "mu" { mu } else { lambda };
-            }
-            let known = Self::compile(text).ok()?;
-            known.is_same_program(self).then_some((law, moduli))
-        })
-        .next()
     }
 }
 
-/// One of many in general position: the multiples of nine irrational numbers, without their whole parts.
-fn deformation(point: u32) -> Mat3 {
-    let size = SIZES[point as usize % SIZES.len()];
-    let entry = |prime: f64| size * (2.0 * (f64::from(point + 1) * prime.sqrt()).fract() - 1.0);
-    let column = |primes: [f64; 3]| Vec3::new(entry(primes[0]), entry(primes[1]), entry(primes[2]));
-    let columns = [[2.0, 3.0, 5.0], [7.0, 11.0, 13.0], [17.0, 19.0, 23.0]].map(column);
-    Mat3::IDENTITY + Mat3 { columns }
+/// The energy of the library's text of a law for each modulus alone.
+fn of_moduli(law: AnyLaw, expansion: &mut Expansion) -> Option<[Expanded; 2]> {
+    let written = WRITTEN_LAWS.iter().find(|written| written.name == law.entry().name)?;
+    let text = written.text().ok()?;
+    let mut of_modulus = |modulus: &str| {
+        let with_it = |(name, parameter): &(String, LawParameter)| {
+            let value = if name == modulus { 1.0 } else { 0.0 };
+            let parameter = match parameter {
+                LawParameter::Number { dimension, .. } => {
+                    LawParameter::Number { value, dimension: *dimension }
+                }
+                LawParameter::Direction(_) => *parameter,
+            };
+            (name.clone(), parameter)
+        };
+        expansion.of(&LawText { parameters: text.parameters.iter().map(with_it).collect(), ..text.clone() })
+    };
+    Some([of_modulus("mu")?, of_modulus("lambda")?])
 }
 
 #[cfg(test)]
@@ -130,19 +97,90 @@ mod tests {
     use super::*;
     use crate::materials::law_text;
 
-    fn law_of(energy: &str, definitions: &[(&str, &str)]) -> Option<AnyLaw> {
+    /// `λ` and `μ` of the texts [Pa].
+    const MODULI: [(&str, &str); 2] = [("lambda", "20 kPa"), ("mu", "10 kPa")];
+
+    fn material(energy: &str, parameters: &[(&str, &str)], definitions: &[(&str, &str)]) -> Material {
         let owned = |list: &[(&str, &str)]| -> Vec<(String, String)> {
             list.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
-        let parameters = owned(&[("lambda", "20 kPa"), ("mu", "10 kPa")]);
-        let text = law_text(energy, &parameters, &owned(definitions)).unwrap();
+        let text = law_text(energy, &owned(parameters), &owned(definitions)).unwrap();
         let text = TextLaw::known(text).unwrap();
         let small_strain = text.small_strain();
-        let material =
-            Material { law: MaterialLaw::Text(text), parameters: [0.0; 8], small_strain, density: 1.0 };
-        match material.of_table().law {
+        Material { law: MaterialLaw::Text(text), parameters: [0.0; 8], small_strain, density: 1.0 }
+    }
+
+    fn law_of(energy: &str, definitions: &[(&str, &str)]) -> Option<AnyLaw> {
+        match material(energy, &MODULI, definitions).of_table().law {
             MaterialLaw::Known(law) => Some(law),
             MaterialLaw::Text(_) => None,
+        }
+    }
+
+    /// Texts in other words run as the law, with its moduli to rounding.
+    #[test]
+    fn moduli_are_found_in_any_wording() {
+        const M: [(&str, &str); 2] = [("m", "5 MPa"), ("l", "8 MPa")];
+        let (stable, corotational) = (AnyLaw::StableNeoHookean, AnyLaw::Corotational);
+        // m = 4/3 μ, l = λ + 5/6 μ
+        let of_m = [3.75e6, 8e6 - 5.0 / 6.0 * 3.75e6];
+        let lame = [1e4, 2e4];
+        let in_other_words: [(&str, &[(&str, &str)], AnyLaw, [f64; 2]); 8] = [
+            ("l/2*(J - 1)^2 - 3/4*m*(J - 1) + m/2*(I1 - 3 - log((I1 + 1)/4))", &M, stable, of_m),
+            ("m/2*(I1 - 3) + l/2*(J - 1 - 3/4*m/l)^2 + m*log(2/sqrt(I1 + 1))", &M, stable, of_m),
+            (
+                "2/3*mu*(tr(C) - log(1 + tr(C))) + (lambda/2 + 5/12*mu)*(det(F)^2 - 2*J) - mu*J",
+                &MODULI,
+                stable,
+                lame,
+            ),
+            (
+                "lambda/2*(l1 + l2 + l3 - 3)^2 + mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2)",
+                &MODULI,
+                corotational,
+                lame,
+            ),
+            (
+                "mu*((l3 - 1)^2 + (l2 - 1)^2 + (l1 - 1)^2) + (3 - l3 - l2 - l1)^2*lambda/2",
+                &MODULI,
+                corotational,
+                lame,
+            ),
+            ("mu*(I1 - 2*(l1 + l2 + l3)) + lambda/2*(l1 + l2 + l3 - 3)^2", &MODULI, corotational, lame),
+            ("mu*tr(E*E) + tr(E)*tr(E)*lambda/2", &MODULI, AnyLaw::StVenantKirchhoff, lame),
+            ("mu*dot(E, E)", &[("mu", "10 kPa")], AnyLaw::StVenantKirchhoff, [1e4, 0.0]),
+        ];
+        for (energy, parameters, law, [mu, lambda]) in in_other_words {
+            let of_table = material(energy, parameters, &[]).of_table();
+            assert_eq!(of_table.law, MaterialLaw::Known(law), "{energy}");
+            let found = of_table.small_strain;
+            let off = (found.mu - mu).abs().max((found.lambda - lambda).abs());
+            assert!(off <= 1e-13 * (mu + lambda), "{energy}: {found:?}");
+        }
+    }
+
+    /// What differs from a law by one number, one stretch or one power, or by a term however small, is another.
+    #[test]
+    fn near_misses_are_no_laws_of_the_table() {
+        const STABLE: [(&str, &str); 2] = [("m", "4/3*mu"), ("l", "lambda + 5/6*mu")];
+        for (energy, definitions) in [
+            (
+                "m/2*(I1 - 3 - log((I1 + 1)/4)) + l/2*(J - 1)^2 - 3/4*m*(J - 1) + 1e-20*mu*(I1 - 3)^2",
+                &STABLE[..],
+            ),
+            ("mu*(I1 - 3 - 2*log((I1 + 2)/5)) + l/2*(J - 1)^2 - 6/5*mu*(J - 1)", &STABLE),
+            (
+                "mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1 + l2 + l3 - 3)^2 + 1e-20*mu*(l1*l2*l3 - 1)^2",
+                &[],
+            ),
+            ("mu*((l1 - 1)^4 + (l2 - 1)^4 + (l3 - 1)^4) + lambda/2*(l1 + l2 + l3 - 3)^2", &[]),
+            ("mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1*l2*l3 - 1)^2", &[]),
+            (
+                "mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1 + l2 + l3 - 3)^2*(1 + 1e-9*(J - 1))",
+                &[],
+            ),
+        ] {
+            assert_eq!(law_of(energy, definitions), None, "{energy}");
         }
     }
 
