@@ -24,8 +24,7 @@ use expressions::Expressions;
 
 const NAME: &str = "grouped_constants";
 const ELEMENTS: &str = "volume elements";
-const LAWS: &str =
-    "linear, corotational, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, and laws as text";
+const LAWS: &str = "linear, corotational, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, mooney_rivlin, yeoh, and laws as text";
 
 pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     name: NAME,
