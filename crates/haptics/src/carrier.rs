@@ -186,8 +186,10 @@ impl HandCarrier {
                 state.since_tick = 0.0;
                 let device = self.has_device(&state).then_some(state.arm.hand.place);
                 match feeling {
-                    Feeling::Tool(tool) => self.rest.port.tick(&mut state.port, device, tool),
-                    Feeling::Force(force) => self.rest.port.tick_with(&mut state.port, device, force),
+                    Feeling::Tool(tool) => self.rest.port.tick(&mut state.port, device, TICK, tool),
+                    Feeling::Force(force) => {
+                        self.rest.port.tick_with(&mut state.port, device, TICK, force);
+                    }
                 }
                 // what an implicit step tells is of its own end
                 state.age = state.age.max((state.arm.time - told).max(0.0) + TICK);

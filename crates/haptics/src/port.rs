@@ -46,17 +46,24 @@ impl Port {
         PortState { engaged: 1.0, ..PortState::default() }
     }
 
-    /// A tick: the device is at `device`, `None` where it is lost; the force on the hand is in the state afterwards.
-    pub fn tick(&self, state: &mut PortState, device: Option<Vec3>, tool: Moving) {
-        self.tick_as(state, device, |hand| self.coupling.pull(tool, hand));
+    /// A tick, `elapsed` seconds after the one before: the device is at `device`, `None` where it is lost; the force on the hand is in the
+    /// state afterwards.
+    pub fn tick(&self, state: &mut PortState, device: Option<Vec3>, elapsed: f64, tool: Moving) {
+        self.tick_as(state, device, elapsed, |hand| self.coupling.pull(tool, hand));
     }
 
     /// The same of a device that feels a force itself, and not where its tool is.
-    pub fn tick_with(&self, state: &mut PortState, device: Option<Vec3>, force: Vec3) {
-        self.tick_as(state, device, |_| force);
+    pub fn tick_with(&self, state: &mut PortState, device: Option<Vec3>, elapsed: f64, force: Vec3) {
+        self.tick_as(state, device, elapsed, |_| force);
     }
 
-    fn tick_as(&self, state: &mut PortState, device: Option<Vec3>, pull: impl Fn(Moving) -> Vec3) {
+    fn tick_as(
+        &self,
+        state: &mut PortState,
+        device: Option<Vec3>,
+        elapsed: f64,
+        pull: impl Fn(Moving) -> Vec3,
+    ) {
         let Some(place) = device else {
             // nobody is there to feel anything
             *state = PortState { force: Vec3::ZERO, engaged: 0.0, ..*state };
@@ -68,8 +75,8 @@ impl Port {
         }
         let moved = place - state.place;
         state.energy -= state.force.dot(moved);
-        state.engaged = (state.engaged + TICK / ENGAGING).min(1.0);
-        let hand = Moving { place, velocity: moved / TICK };
+        state.engaged = (state.engaged + elapsed / ENGAGING).min(1.0);
+        let hand = Moving { place, velocity: moved / elapsed };
         let pull = self.coupling.limited(pull(hand) * state.engaged);
         let force = if self.passive { fitting(pull, hand.velocity, state.energy) } else { pull };
         state.jump = state.jump.max((force - state.force).length());
@@ -100,7 +107,7 @@ mod tests {
             let place = Vec3::X * x;
             // the tool is stopped by the wall
             let tool = Moving { place: Vec3::X * x.max(0.0), velocity: Vec3::ZERO };
-            port.tick(&mut state, Some(place), tool);
+            port.tick(&mut state, Some(place), TICK, tool);
             least = least.min(state.energy);
         }
         (state, least)
@@ -131,7 +138,7 @@ mod tests {
                 (PortState { place: Vec3::X * 2e-3, ..Port::start() }, f64::INFINITY);
             for tick in 0..4000 {
                 let felt = Vec3::X * (-STIFF.stiffness * depth(tick - 20)).max(0.0);
-                port.tick_with(&mut state, Some(Vec3::X * depth(tick)), felt);
+                port.tick_with(&mut state, Some(Vec3::X * depth(tick)), TICK, felt);
                 least = least.min(state.energy);
             }
             (state.energy, least)
@@ -149,7 +156,7 @@ mod tests {
     fn forces_are_limited() {
         let port = Port { coupling: STIFF, passive: false };
         let mut state = Port::start();
-        port.tick(&mut state, Some(Vec3::new(0.3, -0.4, 0.0)), Moving::default());
+        port.tick(&mut state, Some(Vec3::new(0.3, -0.4, 0.0)), TICK, Moving::default());
         assert!((state.force - Vec3::new(-6.0, 8.0, 0.0)).length() < 1e-12);
     }
 
@@ -159,13 +166,13 @@ mod tests {
         let port = Port { coupling: STIFF, passive: false };
         let mut state = Port::start();
         let place = Vec3::X * 4e-3;
-        port.tick(&mut state, Some(place), Moving::default());
+        port.tick(&mut state, Some(place), TICK, Moving::default());
         let held = state;
-        port.tick(&mut state, None, Moving::default());
+        port.tick(&mut state, None, TICK, Moving::default());
         assert_eq!((state.force, state.energy), (Vec3::ZERO, held.energy));
         let mut before = 0.0;
         for tick in 1..=200 {
-            port.tick(&mut state, Some(Vec3::X * 1e-3), Moving::default());
+            port.tick(&mut state, Some(Vec3::X * 1e-3), TICK, Moving::default());
             let length = state.force.length();
             // k x T / 0.2 s a tick
             assert!(length - before <= 2.0 * TICK / ENGAGING * (1.0 + 1e-9), "{tick} {length}");

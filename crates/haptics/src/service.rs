@@ -181,8 +181,10 @@ struct Desk {
 }
 
 impl Desk {
+    /// At the date `now`, by so many ticks after the last one.
     fn serve(&mut self, wire: &Wire, now: f64, ticks: u32) {
         let Station { device, port, feels, .. } = &mut self.station;
+        let elapsed = f64::from(ticks) * TICK;
         for _ in 0..ticks.min(MOST_AT_ONCE) {
             self.device = device.exchange(self.port.force);
         }
@@ -190,13 +192,14 @@ impl Desk {
             && told != self.told
         {
             self.told = told;
-            self.tool.tell(Moving { place: Vec3::new(x, y, z), velocity: Vec3::new(u, v, w) }, now);
+            let tool = Moving { place: Vec3::new(x, y, z), velocity: Vec3::new(u, v, w) };
+            self.tool.tell(told as u64, tool, now);
             self.felt.tell(Vec3::new(a, b, c), now);
         }
         let tool = self.tool.at(now);
         match feels {
-            Feels::Tool => port.tick(&mut self.port, self.device, tool),
-            Feels::Force => port.tick_with(&mut self.port, self.device, self.felt.at(now)),
+            Feels::Tool => port.tick(&mut self.port, self.device, elapsed, tool),
+            Feels::Force => port.tick_with(&mut self.port, self.device, elapsed, self.felt.at(now)),
         }
         let [x, y, z] = self.port.place.to_array();
         wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some()))]);
@@ -220,15 +223,17 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
     let mut desks: Vec<Desk> = stations.into_iter().map(desk).collect();
     let mut toll = Toll { priority: hurry(), ..Toll::default() };
     let start = Instant::now();
-    let (mut pace, mut woken) = (Pace::new(Duration::from_secs_f64(TICK)), start);
+    let (mut pace, mut woken, mut dates) = (Pace::new(Duration::from_secs_f64(TICK)), start, 0_u64);
     while !stop.load(Ordering::Relaxed) {
         let (_, left_out) = pace.wait();
         let now = Instant::now();
         toll.periods.push((now - woken).as_secs_f64());
         toll.left_out += u64::from(left_out);
         woken = now;
+        // devices and tools are shown as of the date, by however much the loop woke later: they move on together
+        dates += u64::from(left_out) + 1;
         for (desk, wire) in desks.iter_mut().zip(wires) {
-            desk.serve(wire, (now - start).as_secs_f64(), left_out + 1);
+            desk.serve(wire, dates as f64 * TICK, left_out + 1);
         }
         toll.busy += now.elapsed().as_secs_f64();
     }

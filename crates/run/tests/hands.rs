@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_haptics::{Between, Coupling, Moving, Port, Smoothing, Tick};
+use souple_haptics::{Between, Coupling, Moving, Port, Smoothing, TICK, Tick};
 use souple_math::Vec3;
 use souple_run::{Control, Options, Session, Snapshot, run, run_in_time};
 use souple_scene::{Scene, read_text};
@@ -78,20 +78,20 @@ fn wrong_hands() {
 /// The greatest change of the force on a person from one millisecond to the next, over the force (V-43): the hand goes into an elastic body
 /// of 200 N/m at 20 mm/s, and a world of 10 ms tells where its tool is, in balance between the body and the coupling of 400 N/m.
 fn greatest_step_of_force(between: Between) -> f64 {
-    let (body, speed, period) = (200.0, 0.02, 10);
+    let (body, speed, period) = (200.0, 0.02, 10_u64);
     let coupling = Coupling { damping: 0.0, ..Coupling::DEFAULT };
     let port = Port { coupling, passive: false };
     let (mut state, mut smoothing) = (Port::start(), Smoothing::new(between, 0.01));
     let mut greatest = 0.0_f64;
     for tick in 0..500 {
-        let now = f64::from(tick) * 1e-3;
+        let now = tick as f64 * 1e-3;
         if tick % period == 0 {
             let share = coupling.stiffness / (coupling.stiffness + body);
             let tool = Moving { place: Vec3::X * (share * speed * now), velocity: Vec3::X * (share * speed) };
-            smoothing.tell(tool, now);
+            smoothing.tell(tick / period, tool, now);
         }
         let before = state.force.length();
-        port.tick(&mut state, Some(Vec3::X * (speed * now)), smoothing.at(now));
+        port.tick(&mut state, Some(Vec3::X * (speed * now)), TICK, smoothing.at(now));
         if tick > 100 {
             greatest = greatest.max((state.force.length() - before).abs() / before);
         }
@@ -106,6 +106,54 @@ fn forces_do_not_jump_between_periods() {
     let (even, held) = (greatest_step_of_force(Between::Interpolate), greatest_step_of_force(Between::Hold));
     assert!(even < 0.05, "{even}");
     assert!(held > 0.05, "{held}");
+}
+
+/// A hand that presses a wall of 200 N/m by four centimetres and comes back, again and again, joined by spring and damper to a tool that a
+/// world of 10 ms tells of up to six milliseconds late: the greatest change of the force in a millisecond [N], and the least that is in the account
+/// of energy [J].
+fn pressed_late(passive: bool) -> (f64, f64) {
+    let (body, depth, omega) = (200.0, 0.02, std::f64::consts::TAU / 1.2);
+    let port = Port { coupling: Coupling { limit: 50.0, ..Coupling::DEFAULT }, passive };
+    let share = port.coupling.stiffness / (port.coupling.stiffness + body);
+    let hand = |time: f64| {
+        let (sine, cosine) = (omega * time).sin_cos();
+        Moving { place: Vec3::X * (depth * (1.0 - cosine)), velocity: Vec3::X * (depth * omega * sine) }
+    };
+    let (mut state, mut smoothing) = (Port::start(), Smoothing::new(Between::Interpolate, 0.01));
+    let (mut step, mut greatest, mut least) = (1_u64, 0.0_f64, 0.0_f64);
+    for tick in 0..6000_u64 {
+        let now = tick as f64 * TICK;
+        if tick >= 10 * step + step * 5 % 7 {
+            let Moving { place, velocity } = hand(step as f64 * 0.01);
+            smoothing.tell(step, Moving { place: place * share, velocity: velocity * share }, now);
+            step += 1;
+        }
+        let before = state.force;
+        port.tick(&mut state, Some(hand(now).place), TICK, smoothing.at(now));
+        least = least.min(state.energy);
+        if tick > 100 {
+            greatest = greatest.max((state.force - before).length());
+        }
+    }
+    (greatest, least)
+}
+
+/// However late messages of the world come, the force on a hand changes by what spring and damper make of how hand and tool move, and the
+/// controller takes as much as is put in.
+#[test]
+fn late_messages_do_not_jump() {
+    let (speed, acceleration) =
+        (0.02 * std::f64::consts::TAU / 1.2, 0.02 * (std::f64::consts::TAU / 1.2).powi(2));
+    // k (v + v') T + c (a + a') T, as hand and tool may be at any phase
+    let Coupling { stiffness, damping, .. } = Coupling::DEFAULT;
+    let bound = 2.0 * (stiffness * speed + damping * acceleration) * TICK;
+    let (greatest, _) = pressed_late(false);
+    assert!(greatest <= bound, "{greatest} {bound}");
+    // a tool that stood still for a tick would be felt by this
+    assert!(bound < damping * speed);
+    // |F| |a| T² of a tick: the speed at the next tick is not known
+    let (_, least) = pressed_late(true);
+    assert!(least >= -stiffness * 0.04 * acceleration * TICK * TICK, "{least}");
 }
 
 const PRESS: &str = include_str!("../../../scenes/held_press/scene.toml");
