@@ -225,7 +225,7 @@ pub const BENCHES: &[Bench] = &[
     },
     Bench {
         name: "haptic_period_99_9",
-        what: "periods of the devices' loop beside the liver in an emulated hand, against the clock [ms]; loads of the worlds",
+        what: "periods of the devices' loop beside the liver in an emulated hand, against the clock [ms]; the greatest change of the force from tick to tick [N]; loads of the worlds",
         run: hands::period,
     },
     Bench {

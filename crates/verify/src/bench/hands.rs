@@ -1,6 +1,7 @@
 //! How well the loop of the devices keeps its time, beside worlds that an emulated hand pokes.
 
 use souple_run::{Control, InTime, Options, Session, run_in_time};
+use souple_scene::spec::expect::{Bound, Expect};
 
 use super::timing::scene;
 use super::{Effort, Figure};
@@ -25,19 +26,48 @@ struct Kept {
     run: InTime,
     /// Of the world [s].
     period: f64,
+    /// The most that the force on the hand may change by in a tick, as the scene has it [N].
+    most_jump: Option<f64>,
     bytes: usize,
 }
 
 fn keep(name: &str, settings: &[&str], duration: f64) -> Result<Kept, String> {
     let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
-    let mut session =
-        Session::start(scene(name, &settings)?, &Options::default()).map_err(|error| error.to_string())?;
+    let scene = scene(name, &settings)?;
+    let most_jump = scene.expects.iter().find(|expect| expect.probe == "jump").and_then(most);
+    let mut session = Session::start(scene, &Options::default()).map_err(|error| error.to_string())?;
     let (bytes, period) = (session.world.bytes(), session.world.model().period);
     let run =
         run_in_time(&mut session, duration, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
     match &session.failure {
         Some(failure) => Err(failure.message()),
-        None => Ok(Kept { run, period, bytes }),
+        None => Ok(Kept { run, period, most_jump, bytes }),
+    }
+}
+
+/// What an expectation is not to exceed.
+fn most(expect: &Expect) -> Option<f64> {
+    match expect.bound {
+        Bound::Between { max, .. } => Some(max),
+        Bound::Near { .. } | Bound::NearVector { .. } => None,
+    }
+}
+
+/// The greatest change of the force on the hand from tick to tick, held against what the scene states of its run without a clock; beside it the
+/// share of ticks that changed it by more.
+fn jump(name: &str, kept: &Kept) -> Figure {
+    let served = &kept.run.served;
+    let changes = served.ticks[0].windows(2).map(|pair| (pair[1].force - pair[0].force).length());
+    let bound = kept.most_jump.unwrap_or(f64::INFINITY);
+    let above = changes.filter(|change| *change > bound).count();
+    Figure {
+        value: served.ports[0].jump,
+        unit: "N from tick to tick of the devices' loop, at most",
+        error: above as f64 / served.ticks[0].len().max(1) as f64,
+        error_of: "share of ticks above what the scene states".to_owned(),
+        baseline: kept.most_jump,
+        samples: served.ticks[0].len(),
+        ..load(name, kept)
     }
 }
 
@@ -120,7 +150,7 @@ fn late(name: &str, kept: &Kept) -> Figure {
     }
 }
 
-/// The period that 99.9 % do not exceed, and what the worlds needed of their time; the error beside the first is the share
+/// The period that 99.9 % do not exceed, the greatest change of the force, and what the worlds needed of their time; the error beside the first is the share
 /// of periods above 1.2 ms, that beside the loads the share of periods of the world that came late.
 pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
     let duration = effort.choose(QUICK, FULL);
@@ -157,6 +187,7 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             bytes: liver.bytes,
             by_processor: None,
         },
+        jump("haptic_jump_liver", &liver),
         load("haptic_load_liver", &liver),
         worst("haptic_load_liver_99", &liver),
         load("haptic_load_block_30k", &block),
