@@ -3,7 +3,9 @@
 use souple_engine::steppers::TABLE;
 use souple_engine::{Kinematics, Mass, Model, SnapshotError, State, System, UnknownKind, World};
 use souple_math::Vec3;
-use souple_models::network::{Crowd, CrowdDescription, Friction, LINKS, LinkKernel, Listing, Making, Slide};
+use souple_models::network::{
+    Crowd, CrowdDescription, Friction, LINKS, LinkKernel, Listing, Making, Slide, Span,
+};
 use souple_table::{Value, Values};
 
 const TE: f64 = 1e-3;
@@ -38,7 +40,8 @@ fn law(name: &str) -> Box<dyn LinkKernel> {
         };
         values.set(parameter.name, value);
     }
-    (entry.build)(&Making { values: &entry.values(values).unwrap(), timestep: TE }).unwrap()
+    (entry.build)(&Making { values: &entry.values(values).unwrap(), timestep: TE, span: Span::Distance })
+        .unwrap()
 }
 
 /// Balls in a lump, two of which fly at each other: some meet, some part.

@@ -61,7 +61,7 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
         values.set(parameter.name, value);
     }
     let values = entry.values(values).unwrap();
-    (entry.build)(&Making { values: &values, timestep: TE }).unwrap()
+    (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap()
 }
 
 fn links(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], rest: f64, account: Account) -> Links {
@@ -351,7 +351,12 @@ fn chain(count: usize, stiffness: f64, start: impl Fn(usize) -> f64) -> World {
     let ends: Vec<[u32; 2]> = (0..count as u32 + 1).map(|i| [i, i + 1]).collect();
     let values = Values::new().with("stiffness", Value::Number(stiffness));
     let spring = LINKS.find("spring").unwrap();
-    let law = (spring.build)(&Making { values: &spring.values(values).unwrap(), timestep: TE }).unwrap();
+    let law = (spring.build)(&Making {
+        values: &spring.values(values).unwrap(),
+        timestep: TE,
+        span: Span::Distance,
+    })
+    .unwrap();
     let mut kinematics = Kinematics::default();
     kinematics.add_unknowns(UnknownKind::Point, count + 2);
     let mut mass = Mass::new(count + 2);
@@ -506,7 +511,9 @@ fn automata_are_checked() {
             .with("transitions", Value::Texts(&transitions))
             .with("entries", Value::Texts(&entries));
         let values = entry.values(values).unwrap();
-        (entry.build)(&Making { values: &values, timestep: TE }).unwrap_err().to_string()
+        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance })
+            .unwrap_err()
+            .to_string()
     };
     let two = [("a", "0"), ("b", "-D")];
     let cases = [
@@ -543,7 +550,7 @@ fn texts_of_laws_are_checked() {
             words.iter().for_each(|(name, text)| values.set(*name, Value::Text(text)));
             texts.iter().for_each(|(name, pairs)| values.set(*name, Value::Texts(pairs)));
             let values = entry.values(values).unwrap();
-            (entry.build)(&Making { values: &values, timestep: TE })
+            (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance })
                 .map(|_| ())
                 .map_err(|error| error.to_string())
         };

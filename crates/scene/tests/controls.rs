@@ -147,6 +147,11 @@ fn wrong_controls_are_refused() {
         &with("links = \"band\"\nparameter = \"mass\"\nvalue = \"1\""),
         &["no `mass` that can be driven", "stiffness, damping"],
     );
+    let bent = pulled(
+        "{ name = \"cohesion\", distance = 1, peak = 1.2, range = 1.5, cohesion = 4 }",
+        "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"cohesion\"\nvalue = \"1\"\n",
+    );
+    refused(&bent, &["no `cohesion` that can be driven", "`connects`", "`spring_damper`"]);
     refused(
         &with("links = \"band\"\nconnects = \"x > 0\"\ninputs.x = { of = \"bob\", quantity = \"position\" }"),
         &["`x` is a vector", "component"],

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
+use souple_models::network::LINKS;
+use souple_scene::spec::units::from_algorithmic;
 use souple_scene::{Scene, read_text};
+use souple_table::Kind;
 
 const HEAD: &str = "format = 1\n[world]\nperiod = \"10 ms\"\n[systems.main]\nstepper = \"t_simulation\"\n";
 
@@ -358,4 +361,207 @@ fn items_are_appended_to_lists() {
     assert!(message.contains("an index below 1, or 1 for one more"), "{message}");
     let message = read("pins[1].axes=x").err().unwrap();
     assert!(message.contains("an index below 1") && !message.contains("one more"), "{message}");
+}
+
+/// Where a scene's first system stands after some periods: places and velocities.
+fn moved(text: &str, periods: usize) -> Vec<f64> {
+    let Scene { model, state, .. } = scene(text).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+    let mut world = model.start(state);
+    (0..periods).for_each(|_| world.step().expect("a step"));
+    let rows = world.rows(0);
+    rows.positions.iter().chain(&rows.velocities).flat_map(|row| row.to_array()).collect()
+}
+
+/// The same numbers up to the rounding of units, which motions of order 1 take up a few hundred times.
+fn assert_same_motion(what: &str, physical: &str, algorithmic: &str) {
+    let [a, b] = [physical, algorithmic].map(|text| moved(text, 40));
+    let start = moved(physical, 0);
+    let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(differ(&a, &b) < 1e-9, "{what}: {a:?} in SI units, {b:?} counted in steps");
+    assert!(differ(&a, &start) > 1e-3, "{what} does not move");
+}
+
+/// A model is the same in both spaces: with every number of every law, and of friction.
+#[test]
+fn both_spaces_give_one_motion() {
+    let step = 0.01;
+    let list = |numbers: &[f64], unit: &str, is_physical: bool| {
+        let factor = if is_physical { 1.0 } else { from_algorithmic(unit, step) };
+        let words: Vec<String> = numbers.iter().map(|number| format!("{:e}", number / factor)).collect();
+        words.join(", ")
+    };
+    let net = |is_physical: bool, rest: &str| {
+        let of = |number: f64, unit: &str| list(&[number], unit, is_physical);
+        format!(
+            "[networks.n]\nspace = \"{}\"\n[networks.n.masses.a]\npositions = [[0, 0, 0]]\nmass = {}\nvelocity = [{}, {}, 0]\n\
+             [networks.n.masses.b]\npositions = [[0.9, 0.1, 0]]\nmass = {}\ndrag = {}\n{rest}",
+            if is_physical { "physical" } else { "algorithmic" },
+            of(2.0, "kg"),
+            of(0.7, "m/s"),
+            of(0.9, "m/s"),
+            of(3.0, "kg"),
+            of(0.1, "N s/m"),
+        )
+    };
+    for entry in LINKS.entries {
+        let is_written = |kind: Kind| matches!(kind, Kind::Text | Kind::Texts);
+        if entry.parameters.iter().any(|parameter| is_written(parameter.kind)) {
+            continue;
+        }
+        let links = |is_physical: bool| {
+            let mut lists = 0;
+            let said = entry.parameters.iter().enumerate().filter_map(|(index, parameter)| {
+                let (name, unit) = (parameter.name, parameter.unit);
+                match parameter.kind {
+                    _ if parameter.default.is_some() && from_algorithmic(unit, step) == 1.0 => None,
+                    // thresholds ascend as they are told
+                    Kind::Number => {
+                        Some(format!("{name} = {}", list(&[1.0 + index as f64], unit, is_physical)))
+                    }
+                    Kind::Numbers => {
+                        // a piece more than thresholds
+                        lists += 1;
+                        Some(format!("{name} = [{}]", list(&[1.0, 2.0, 0.0][..lists + 1], unit, is_physical)))
+                    }
+                    // of another kind no number has a time or a mass in its unit
+                    _ => {
+                        assert_eq!(from_algorithmic(unit, step), 1.0, "{}.{name}", entry.name);
+                        None
+                    }
+                }
+            });
+            let law: Vec<String> = said.collect();
+            let law = format!("{{ name = \"{}\", {} }}", entry.name, law.join(", "));
+            net(is_physical, &format!("[[networks.n.links]]\nlaw = {law}\nof = [\"a\", \"b\"]\nall = true\n"))
+        };
+        assert_same_motion(entry.name, &links(true), &links(false));
+    }
+    let rubbed = |is_physical: bool, sliding: &str| {
+        let of = |number: f64, unit: &str| list(&[number], unit, is_physical);
+        net(
+            is_physical,
+            &format!(
+                "[[networks.n.crowds]]\nlaw = {{ name = \"ball\", threshold = 1, stiffness = {}, damping = {} }}\n\
+                 friction = {{ static = 0.6, kinetic = 0.3, stiffness = {}, damping = {}, speed = {}, {sliding} }}\n",
+                of(80.0, "N/m"),
+                of(0.5, "N s/m"),
+                of(300.0, "N/m"),
+                of(0.4, "N s/m"),
+                of(0.02, "m/s"),
+            ),
+        )
+    };
+    let falling = |is_physical: bool| {
+        let of = |number: f64, unit: &str| list(&[number], unit, is_physical);
+        let (fall, growth) = (of(0.2, "m/s"), of(0.05, "s/m"));
+        rubbed(
+            is_physical,
+            &format!("fall = {fall}, growth = {growth}, hook_viscosity = {}", of(6.0, "N s/m")),
+        )
+    };
+    assert_same_motion("friction that falls and grows", &falling(true), &falling(false));
+    let curved = |is_physical: bool| {
+        let speeds = list(&[0.0, 0.3, 0.8], "m/s", is_physical);
+        rubbed(is_physical, &format!("speeds = [{speeds}], coefficients = [0.5, 0.2, 0.4]"))
+    };
+    assert_same_motion("friction by a curve", &curved(true), &curved(false));
+}
+
+/// A heap is as stiff as the neighbours that a ball may have in it: `2 · 12 (K + 2 z/Te) < 4 m/Te²` in space, half as many in a
+/// plane, and those that there are where they are fewer.
+#[test]
+fn stiff_crowds_are_warned_of() {
+    let heap = |count: usize, stiffness: f64, more: &str| {
+        let text = format!(
+            "[networks.n]\nvelocity = [0, 1, {}]\n[networks.n.masses.a]\nline = {{ from = [0, 0, 0], to = [{count}, 0, 0], count = {count} }}\nmass = 3\n{more}\
+             [[networks.n.crowds]]\nlaw = {{ name = \"ball\", threshold = 0.5, stiffness = {stiffness} }}\n",
+            u8::from(!more.contains("pins"))
+        );
+        scene(&text).unwrap().warnings.join("\n")
+    };
+    let plane = "[[networks.n.pins]]\nregion = \"a\"\naxes = \"z\"\n";
+    // 4 m/Te² = 120 000 N/m
+    for (count, more, most) in [(20, "", 5000.0), (20, plane, 10_000.0), (4, "", 20_000.0)] {
+        assert_eq!(heap(count, most - 1.0, more), "", "{count} balls");
+        let said = heap(count, most + 1.0, more);
+        let neighbours = (60_000.0 / most).round();
+        let words = [
+            format!("{neighbours} in crowd `n.crowds[0]`"),
+            "at mass 0 of network `n`".to_owned(),
+            "may be unstable".to_owned(),
+        ];
+        assert!(words.iter().all(|words| said.contains(words)), "{said}");
+    }
+    let ground = "[networks.n.masses.g]\npositions = [[0, 5, 0]]\nmass = 1\nfixed = true\n";
+    // one free neighbour and one that is fixed
+    assert_eq!(heap(2, 39_999.0, ground), "");
+    assert!(heap(2, 40_001.0, ground).contains("2 in crowd"));
+    // a law that is written: its steepest slope
+    let written = |stiffness: f64| {
+        let text = format!(
+            "{TWO}[[networks.n.crowds]]\nrange = 0.5\nlaw = {{ name = \"formula\", push = \"if(D < 0.45, {stiffness} * (0.45 - D), 0)\" }}\n"
+        );
+        scene(&text).unwrap().warnings.join("\n")
+    };
+    assert_eq!(written(39_999.0), "");
+    assert!(written(40_001.0).contains("may be unstable"));
+}
+
+/// Masses of a crowd that start at one place are named, by the first and how many places more there are.
+#[test]
+fn masses_at_one_place_are_told() {
+    let with = |of: &str, fixed: bool| {
+        let text = format!(
+            "[networks.n.masses.a]\npositions = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]\nmass = 1\nfixed = {fixed}\n\
+             [networks.n.masses.b]\npositions = [[5, 0, 0], [1, 0, 0], [-0.0, 0, 0]]\nmass = 1\nfixed = {fixed}\n\
+             [[networks.n.crowds]]\n{of}law = {{ name = \"ball\", threshold = 0.5, stiffness = 1 }}\n"
+        );
+        scene(&text).unwrap().warnings.join("\n")
+    };
+    for of in ["", "of = [\"a\", \"b\"]\n", "of = [\"b\", \"a\"]\n"] {
+        let said = with(of, false);
+        let words =
+            ["masses 0 (`a` 0) and 5 (`b` 2) of network `n` start at one place", "1 place more", "crowds[0]"];
+        assert!(words.iter().all(|words| said.contains(words)), "{said}");
+        assert_eq!(with(of, true), "");
+    }
+    assert_eq!(with("of = [\"a\"]\n", false), "");
+}
+
+/// Along an axis lengths have a sign, so that a dead zone lies about 0: a mass inside drifts on, and is turned back beyond. In space
+/// they have none.
+#[test]
+fn dead_zones_about_zero() {
+    let link = |along: &str| {
+        linked(&format!(
+            "law = {{ name = \"piecewise_linear\", thresholds = [-0.01, 0.01], slopes = [-100, 0, -100], zero = 0 }}\nchain = true\n{along}"
+        ))
+        .replace("[[0, 0, 0], [1, 0, 0]]", "[[0.008, 0, 0], [0, 1, 0]]")
+    };
+    let [start, end] = [0, 20].map(|periods| moved(&link("along = [1, 0, 0]"), periods));
+    // slopes that cancel do so up to rounding: 1e-18 N
+    assert!(start.iter().zip(&end).all(|(a, b)| (a - b).abs() < 1e-15), "no force within: {end:?}");
+    let out = link("along = [1, 0, 0]").replace("0.008", "-0.03");
+    assert!(moved(&out, 1)[0] > -0.03, "pushed back from the other side");
+    refused(&link(""), &["`thresholds` is [-0.01, 0.01]", "never below 0", "along"]);
+    let zero = link("").replace("[-0.01, 0.01]", "[0, 0.01]").replace("zero = 0", "zero = -1");
+    refused(&zero, &["`zero` is -1"]);
+}
+
+/// Transitions that ask for what no distance is are refused in space, and stand along an axis.
+#[test]
+fn transitions_that_never_fire() {
+    let link = |law: &str, along: &str| linked(&format!("law = {{ {law} }}\nchain = true\n{along}"));
+    let axis = "along = [1, 0, 0]";
+    let of = |condition: &str| {
+        format!(
+            "name = \"finite_state\", states = {{ a = \"0\", b = \"1\" }}, transitions = {{ \"a -> b\" = \"{condition}\" }}"
+        )
+    };
+    refused(&link(&of("D < 0"), ""), &["states.a", "to `b` that never fires", "`D < 0`", "not below 0"]);
+    refused(&link(&of("D > 2 and D < 1"), axis), &["to `b` that never fires", "whatever happens"]);
+    assert!(scene(&link(&of("D < 0"), axis)).is_ok());
+    let below = "name = \"conditional\", stiffness = 1, states = { a = \"INF, D, 0 -> b\", b = \"CHK, 0\" }";
+    refused(&link(below, ""), &["states.a", "to `b` that never fires", "`D` is a distance"]);
+    assert!(scene(&link(below, axis)).is_ok());
 }

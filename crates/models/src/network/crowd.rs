@@ -214,7 +214,7 @@ impl Crowd {
         let hook =
             self.0.friction.as_ref().map_or(0.0, |friction| friction.stiffness + 2.0 * friction.damping);
         let bond = self.0.fusible.as_ref().map_or(0.0, Fusible::stiffest);
-        (self.0.law.stiffest(self.0.range) + bond).max(hook)
+        (self.0.law.stiffest_within(self.0.range) + bond).max(hook)
     }
 
     /// What the law stores in a pair that is as far apart as the range [J]; nothing of laws with memory, whose pairs begin there at rest.

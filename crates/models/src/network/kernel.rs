@@ -30,6 +30,10 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn is_conservative(&self) -> bool;
     /// See [`LinkLaw::stiffest`]; of a link of this rest length.
     fn stiffest(&self, rest: f64) -> f64;
+    /// The same of pairs of a crowd, which come as near as half its range.
+    fn stiffest_within(&self, range: f64) -> f64 {
+        self.stiffest(range)
+    }
     /// Beyond it there is no force [m]; infinite where there always is, or nobody can tell.
     fn range(&self) -> f64 {
         f64::INFINITY

@@ -6,11 +6,12 @@
 use std::fmt::Debug;
 
 use souple_engine::LinkState;
-use souple_formal::{ParseError, Span};
+use souple_formal::ParseError;
 use souple_math::{Real, Vec3};
 use souple_table::{Entry, Values};
 
 use super::kernel::LinkKernel;
+use super::span::Span;
 
 /// Most numbers that a law in lanes remembers of a link.
 pub const MEMORY: usize = 5;
@@ -118,6 +119,18 @@ pub struct Making<'a> {
     pub values: &'a Values,
     /// `Te` of the system [s].
     pub timestep: f64,
+    /// What the length `D` of its links is.
+    pub span: Span,
+}
+
+impl Making<'_> {
+    /// What lengths are never below [m].
+    pub fn least_length(&self) -> f64 {
+        match self.span {
+            Span::Distance => 0.0,
+            Span::Along(_) => f64::NEG_INFINITY,
+        }
+    }
 }
 
 /// Makes a law from its checked parameters.
@@ -143,7 +156,7 @@ pub enum LinkError {
         place: String,
         what: String,
         /// What of the text is meant, where it is not all of it.
-        part: Option<Span>,
+        part: Option<souple_formal::Span>,
     },
 }
 
@@ -154,7 +167,7 @@ impl LinkError {
     }
 
     /// The keys that lead to what is wrong, and where that is in the text there.
-    pub fn place(&self) -> (&str, Option<Span>) {
+    pub fn place(&self) -> (&str, Option<souple_formal::Span>) {
         match self {
             Self::Unfit { parameter, .. } => (parameter, None),
             Self::Formula { place, begin, error } => (place, Some(error.span().moved_by(*begin))),

@@ -3,6 +3,7 @@
 //! A mass is a point unknown of the engine. Links of one law are one [`souple_engine::Force`]; what they remember
 //! lives in State. Laws are in [`laws`], one file and one line of its table each.
 
+mod cases;
 pub mod contour;
 pub mod crowd;
 mod crowd_grid;

@@ -3,6 +3,7 @@
 use souple_table::{Kind, Value, Values};
 
 use super::law::{LinkEntry, Making};
+use super::span::Span;
 
 /// Numbers that a link of this law remembers: the dimension of its state. `None` where what a scene writes decides, as of
 /// automata, formulas and rheological networks.
@@ -25,7 +26,7 @@ pub fn state_dimension(entry: &LinkEntry) -> Option<usize> {
         }
     }
     let values = entry.values(values).ok()?;
-    Some((entry.build)(&Making { values: &values, timestep: 1e-3 }).ok()?.memory_len())
+    Some((entry.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance }).ok()?.memory_len())
 }
 
 #[cfg(test)]

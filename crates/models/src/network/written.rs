@@ -52,6 +52,9 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
     }
 }
 
+/// Distances of a pair at which the slope of a written law is looked at.
+const DISTANCES: usize = 16;
+
 /// [`LinkKernel`] of a written law.
 #[derive(Debug)]
 pub struct OneByOne<L>(pub L);
@@ -132,6 +135,21 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
 
     fn stiffest(&self, rest: f64) -> f64 {
         self.0.stiffest(rest)
+    }
+
+    // H(-1) = -∂φ/∂D + ∂φ/∂D^r, as pairs begin, at several distances: the curve may bend anywhere
+    fn stiffest_within(&self, range: f64) -> f64 {
+        let mut numbers = [0.0; WRITTEN_MEMORY];
+        let memory = &mut numbers[..self.0.memory_len()];
+        self.0.begin(range, range, memory);
+        let at = |length: f64| {
+            let reach = Reach { length, before: length, rest: range };
+            let [now, before] = self.0.slopes(&reach, &Moment::of(0.0), memory);
+            before - now
+        };
+        let lengths = (0..DISTANCES).map(|i| range * (0.5 + 0.5 * (i as f64 + 0.5) / DISTANCES as f64));
+        // where a formula has no slope nothing is told
+        lengths.map(at).filter(|slope| slope.is_finite()).fold(self.0.stiffest(range), f64::max)
     }
 
     fn state(&self, _: &Reach, memory: &[f64]) -> LinkState {

@@ -1,19 +1,21 @@
 //! Networks become points with masses, and links of one law one force each.
 
+mod coincident;
 mod controls;
 mod ends;
 mod fill;
+mod steps;
 mod summary;
 mod views;
 
 pub use controls::add as add_controls;
 pub use ends::size;
 pub use fill::fill_all;
+pub use steps::warn_of_steps;
 pub use summary::{FillInfo, LawInfo, NetworkInfo, networks};
 
 use std::ops::Range;
 
-use souple_engine::steppers::Stability;
 use souple_engine::{Force, Mass};
 use souple_formal::Formula;
 use souple_math::Vec3;
@@ -88,7 +90,8 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     if links.len() < network.links.len() {
         return None;
     }
-    let warnings = coincident(body, network, &links, &places, draft);
+    let mut warnings = coincident::links(body, network, &links, &places, draft);
+    warnings.extend(coincident::crowds(body, network, &starts[..masses], draft));
     let links = together(network, links);
     let is_between_masses = |ends: &&[u32; 2]| ends.iter().all(|end| (*end as usize) < masses);
     let nodes = links.iter().flat_map(|links| links.ends.iter().filter(is_between_masses).flatten().copied());
@@ -130,29 +133,6 @@ fn together(network: &Network, links: Vec<PlacedLinks>) -> Vec<PlacedLinks> {
     all
 }
 
-/// Links that have no direction at the start: only another force can part their ends.
-fn coincident(
-    body: &Body,
-    network: &Network,
-    links: &[PlacedLinks],
-    points: &[Vec3],
-    draft: &Draft,
-) -> Vec<String> {
-    let tables = network.links.iter().zip(links);
-    tables
-        .filter_map(|(table, links)| {
-            let meets = |[a, b]: &&[u32; 2]| points[*a as usize] == points[*b as usize];
-            let ends = links.ends.iter().find(|ends| table.span == Span::Distance && meets(ends))?;
-            let [a, b] = ends;
-            let place = draft.place(&table.site);
-            Some(format!(
-                "{place}: masses {a} and {b} of network `{}` start at one place: a link between them has no direction",
-                body.name
-            ))
-        })
-        .collect()
-}
-
 /// Puts the masses of a network where they belong among the rows.
 pub fn add_masses(body: &Placed, network: &Network, mass: &mut Mass) {
     for (row, own) in body.rows.clone().zip(network.of_each(|group| group.mass)) {
@@ -187,7 +167,7 @@ pub fn add_forces(
     let first = body.rows.start as u32;
     for (index, links) in body.links.iter().enumerate() {
         let table = &network.links[links.table];
-        let Some(law) = law(table.law.as_ref(), timestep, draft) else { continue };
+        let Some(law) = law(table.law.as_ref(), (timestep, table.span), draft) else { continue };
         let masses = body.mesh.points.len() as u32;
         let is_viewed = links.ends.iter().flatten().any(|end| *end >= masses);
         let seen = is_viewed
@@ -237,9 +217,13 @@ pub fn add_forces(
     }
 }
 
-fn law(chosen: Option<&Chosen<BuildLink>>, timestep: f64, draft: &Draft) -> Option<Box<dyn LinkKernel>> {
+fn law(
+    chosen: Option<&Chosen<BuildLink>>,
+    (timestep, span): (f64, Span),
+    draft: &Draft,
+) -> Option<Box<dyn LinkKernel>> {
     let chosen = chosen?;
-    match (chosen.entry.build)(&Making { values: &chosen.values, timestep }) {
+    match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
         Ok(law) => Some(law),
         Err(error) => {
             let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
@@ -259,7 +243,7 @@ fn crowd(
     (timestep, listing): (f64, Listing),
     draft: &Draft,
 ) -> Option<Crowd> {
-    let law = law(spec.law.as_ref(), timestep, draft)?;
+    let law = law(spec.law.as_ref(), (timestep, Span::Distance), draft)?;
     if law.asks_for() != AsksFor::default() {
         let message =
             "a condition asks where the ends are, and pairs of a crowd know how far apart they are alone";
@@ -465,7 +449,9 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
     let timestep = spec.world.period / f64::from(spec.systems[body.system].steps_per_period);
     let distance = |crowd: &CrowdSpec| {
         let chosen = crowd.law.as_ref()?;
-        (chosen.entry.build)(&Making { values: &chosen.values, timestep }).ok()?.rest_distance()
+        (chosen.entry.build)(&Making { values: &chosen.values, timestep, span: Span::Distance })
+            .ok()?
+            .rest_distance()
     };
     let holds = |name: &String, group: &Range<u32>| {
         let numbers = network.numbers_of(name).unwrap_or(0..0);
@@ -484,46 +470,4 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
     };
     let each = network.masses.iter().map(|group| (radius(group), group.places.count() as usize));
     each.flat_map(|(radius, count)| std::iter::repeat_n(radius, count)).collect()
-}
-
-/// Warns of masses whose links are too stiff for an explicit step: at a mass `2 Σ H` over links to free masses and `Σ H`
-/// over those to fixed ones must stay below `4 m/Te²`, by Gershgorin's theorem on the links' Laplacian.
-pub fn warn_of_steps(draft: &mut Draft) {
-    let mut warnings = Vec::new();
-    for (body, network) in draft.bodies.iter().filter_map(|body| Some((body, body.spec.network.as_ref()?))) {
-        let system = &draft.systems[body.system];
-        if !matches!(system.stepper.stability(), Stability::Limited(_)) {
-            continue;
-        }
-        let spec = &draft.spec.systems[body.system];
-        let timestep = system.stepper.interval(draft.spec.world.period / f64::from(spec.steps_per_period));
-        let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
-        let mut loads = vec![0.0; body.mesh.points.len()];
-        for (index, links) in body.links.iter().enumerate() {
-            let name = format!("{}.links[{index}]", body.spec.name);
-            let force = system.forces.iter().find(|force| force.name() == name);
-            let Some(law) = force.and_then(|force| force.as_any().downcast_ref::<Links>()) else { continue };
-            for [a, b] in links.ends.iter().map(|ends| ends.map(|end| end as usize)) {
-                loads[a] += law.stiffest() * if is_fixed[b] { 1.0 } else { 2.0 };
-                loads[b] += law.stiffest() * if is_fixed[a] { 1.0 } else { 2.0 };
-            }
-        }
-        // of the bound, at each mass that moves
-        let share = |(mass, load): (usize, &f64)| {
-            let bound = 4.0 * system.mass.diagonal[body.rows.start + mass] / (timestep * timestep);
-            (!is_fixed[mass]).then_some((mass, load / bound))
-        };
-        let shares = loads.iter().enumerate().filter_map(share);
-        let Some((mass, share)) = shares.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
-        if share > 1.0 {
-            warnings.push(format!(
-                "{}: K + 2Z of the links at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
-                 the network may be unstable; a step of {:.3e} s is safe",
-                draft.place(&body.spec.site),
-                body.spec.name,
-                timestep / share,
-            ));
-        }
-    }
-    draft.warnings.extend(warnings);
 }

@@ -8,6 +8,7 @@ use souple_formal::parse_unit;
 use souple_table::Value;
 
 use super::Spec;
+use super::network::FrictionSpec;
 use crate::reader::Chosen;
 
 /// In which space the numbers of a network are written.
@@ -48,13 +49,33 @@ impl Spec {
             }
             for crowd in &mut network.crowds {
                 crowd.law.iter_mut().for_each(|law| make_law_physical(law, timestep));
-                if let Some(friction) = &mut crowd.friction {
-                    friction.damping *= of("N s/m");
-                    friction.speed *= of("m/s");
-                }
+                crowd.friction.iter_mut().for_each(|friction| make_friction_physical(friction, timestep));
             }
         }
     }
+}
+
+/// All of it by name, so that no number is left out.
+fn make_friction_physical(friction: &mut FrictionSpec, timestep: f64) {
+    let FrictionSpec {
+        sticking: _,
+        sliding: _,
+        stiffness,
+        damping,
+        speed,
+        fall,
+        growth,
+        curve,
+        hook_viscosity,
+    } = friction;
+    let of = |unit: &str| from_algorithmic(unit, timestep);
+    *stiffness *= of("N/m");
+    *damping *= of("N s/m");
+    *speed *= of("m/s");
+    fall.iter_mut().for_each(|fall| *fall *= of("m/s"));
+    *growth *= of("s/m");
+    curve.iter_mut().flatten().for_each(|[speed, _]| *speed *= of("m/s"));
+    hook_viscosity.iter_mut().for_each(|viscosity| *viscosity *= of("N s/m"));
 }
 
 fn make_law_physical<B>(law: &mut Chosen<B>, timestep: f64) {

@@ -7,10 +7,11 @@
 use std::cell::Cell;
 
 use souple_engine::LinkState;
-use souple_formal::Formula;
+use souple_formal::{BinaryOperator, Formula};
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
+use crate::network::cases::{Questions, Truth};
 use crate::network::law::{AsksFor, LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{OneByOne, WrittenLaw, check_names, formula, formula_within, number_in};
 
@@ -304,12 +305,12 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
         external,
         asks: reader.asks.get(),
     };
-    check(&conditional, &names)?;
+    check(&conditional, &names, making.least_length())?;
     Ok(conditional)
 }
 
 /// States that nothing leads to, and transitions that never fire.
-fn check(link: &Conditional, names: &[&str]) -> Result<(), LinkError> {
+fn check(link: &Conditional, names: &[&str], least_length: f64) -> Result<(), LinkError> {
     let mut reached = vec![false; names.len()];
     let mut to_look_at = vec![0];
     while let Some(state) = to_look_at.pop() {
@@ -324,41 +325,52 @@ fn check(link: &Conditional, names: &[&str]) -> Result<(), LinkError> {
             "is never entered: no transition leads there from the first",
         );
     }
+    let low = |name: &str| if name == "D" { least_length } else { f64::NEG_INFINITY };
+    let mut questions = Questions::new(&COMPARED, &[], low);
     for (state, name) in link.states.iter().zip(names) {
         let place = format!("states.{name}");
-        let always = |transition: &Transition| transition.condition == Condition::Always;
-        if let Some(at) = state.transitions.iter().rposition(always).filter(|at| *at > 0) {
-            let to = names[state.transitions[at - 1].to];
-            return refuse(
-                &place,
-                format!(
-                    "has a transition to `{to}` that never fires: `ANY` after it is always met, and the last one met wins"
-                ),
-            );
-        }
+        let truths: Vec<Truth> =
+            state.transitions.iter().map(|transition| truth(transition.condition, &mut questions)).collect();
         for (at, Transition { condition, to }) in state.transitions.iter().enumerate() {
-            let later = &state.transitions[at + 1..];
-            let is_covered = later.iter().any(|other| covers(other.condition, *condition));
-            if is_covered {
-                let to = names[*to];
-                return refuse(
-                    &place,
-                    format!(
-                        "has a transition to `{to}` that never fires: one after it is met whenever this is, and the last one met wins"
-                    ),
-                );
+            let later = &truths[at + 1..];
+            if questions.can_hold(&truths[at], later) {
+                continue;
             }
+            let why = match condition {
+                Condition::Below(Variable::Length, bound) if !questions.can_hold(&truths[at], &[]) => {
+                    format!("`D` is a distance, which is not below {bound} m")
+                }
+                _ if later.contains(&Truth::Settled(true)) => {
+                    "`ANY` after it is always met, and the last one met wins".to_owned()
+                }
+                _ => "one after it is met whenever this is, and the last one met wins".to_owned(),
+            };
+            let to = names[*to];
+            return refuse(&place, format!("has a transition to `{to}` that never fires: {why}"));
         }
     }
     Ok(())
 }
 
-/// Whether a condition is met whenever the other is.
-fn covers(one: Condition, other: Condition) -> bool {
-    match (one, other) {
-        (Condition::Above(a, low), Condition::Above(b, high)) => a == b && low <= high,
-        (Condition::Below(a, high), Condition::Below(b, low)) => a == b && high >= low,
-        _ => one == other,
+/// What conditions compare with numbers.
+const COMPARED: [&str; 9] = ["D", "L", "dV", "X1.x", "X1.y", "X1.z", "X2.x", "X2.y", "X2.z"];
+
+/// What a condition asks.
+fn truth(condition: Condition, questions: &mut Questions) -> Truth {
+    let compared = |variable, operator, number| {
+        let variable = match variable {
+            Variable::Length => 0,
+            Variable::Elongation => 1,
+            Variable::Moved => 2,
+            Variable::Place { end, component } => 3 + 3 * usize::from(end) + usize::from(component),
+        };
+        Truth::Compared { variable, operator, number }
+    };
+    match condition {
+        Condition::Above(variable, number) => compared(variable, BinaryOperator::Greater, number),
+        Condition::Below(variable, number) => compared(variable, BinaryOperator::Less, number),
+        Condition::Always => Truth::Settled(true),
+        _ => questions.other(&format!("{condition:?}")),
     }
 }
 
@@ -545,6 +557,7 @@ mod tests {
     use souple_table::Values;
 
     use super::*;
+    use crate::network::Span;
 
     const TE: f64 = 1e-3;
 
@@ -553,7 +566,8 @@ mod tests {
             states.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect();
         let values =
             ENTRY.values(more.with("states", Value::Texts(&texts))).map_err(|error| error.to_string())?;
-        read(&Making { values: &values, timestep: TE }).map_err(|error| error.to_string())
+        read(&Making { values: &values, timestep: TE, span: Span::Distance })
+            .map_err(|error| error.to_string())
     }
 
     /// States and pushes along a course of lengths, the first of which is that of rest.

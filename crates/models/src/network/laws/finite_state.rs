@@ -8,6 +8,7 @@ use souple_formal::{Condition, Formula};
 use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
+use crate::network::cases::{Questions, Truth};
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{
     ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, check_names, constants, formula,
@@ -247,7 +248,8 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     }
     let unknowns = VARIABLES.len() + remembered.len();
     for (state, name) in states.iter_mut().zip(&state_names) {
-        check_that_all_fire(state, &format!("states.{name}"), &state_names, &constants, unknowns)?;
+        let place = format!("states.{name}");
+        check_that_all_fire(state, &place, &state_names, &variables, &constants, making.least_length())?;
         if state.is_slack() {
             let bound = |(condition, _): &(Condition, usize)| {
                 bound_below(condition, &variables, &constants, unknowns)
@@ -277,36 +279,40 @@ fn bound_below(condition: &Condition, variables: &[&str], constants: &[f64], unk
     (left.trim() == "D" && is_known).then(|| bound.evaluate(known(constants, unknowns).as_slice()))
 }
 
-/// Conditions that can never hold, and those that a later one always outdoes.
+/// Conditions that can never hold, and those that later ones always outdo.
 fn check_that_all_fire(
     state: &State,
     place: &str,
     names: &[&str],
+    variables: &[&str],
     constants: &[f64],
-    unknowns: usize,
+    least_length: f64,
 ) -> Result<(), LinkError> {
-    let never = |to: usize, why: String| {
-        Err(text(place, format!("has a transition to `{}` that never fires: {why}", names[to])))
+    let low = |name: &str| match name {
+        "D" | "D_before" => least_length,
+        "t" => 0.0,
+        _ => f64::NEG_INFINITY,
     };
-    // whether a condition that nothing changes holds
-    let settled = |condition: &Condition| {
-        let is_known = !(0..unknowns).any(|variable| condition.depends_on(variable));
-        is_known.then(|| condition.holds(known(constants, unknowns).as_slice()))
-    };
+    let mut questions = Questions::new(variables, constants, low);
+    let truths: Vec<Truth> =
+        state.transitions.iter().map(|(condition, _)| questions.read(condition.text())).collect();
     for (at, (condition, to)) in state.transitions.iter().enumerate() {
-        let said = condition.text();
-        if settled(condition) == Some(false) {
-            return never(*to, format!("`{said}` does not hold, whatever happens"));
+        let (said, later) = (condition.text(), &truths[at + 1..]);
+        if questions.can_hold(&truths[at], later) {
+            continue;
         }
-        for (later, _) in &state.transitions[at + 1..] {
-            if settled(later) == Some(true) || later.text().trim() == said.trim() {
-                let later = later.text();
-                return never(
-                    *to,
-                    format!("`{later}` after it holds whenever it does, and the last that holds wins"),
-                );
-            }
-        }
+        let outdoes = |one: &usize| !questions.can_hold(&truths[at], std::slice::from_ref(&truths[*one]));
+        let why = if !questions.can_hold(&truths[at], &[]) {
+            let is_distance = least_length == 0.0 && (condition.depends_on(0) || condition.depends_on(1));
+            let hint = if is_distance { ", and distances in space are not below 0" } else { "" };
+            format!("`{said}` does not hold, whatever happens{hint}")
+        } else if let Some(one) = (at + 1..truths.len()).find(outdoes) {
+            let later = state.transitions[one].0.text();
+            format!("`{later}` after it holds whenever it does, and the last that holds wins")
+        } else {
+            "one of those after it holds whenever it does, and the last that holds wins".to_owned()
+        };
+        return Err(text(place, format!("has a transition to `{}` that never fires: {why}", names[*to])));
     }
     Ok(())
 }

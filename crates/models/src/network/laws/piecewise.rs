@@ -124,18 +124,36 @@ pub const PIECEWISE_LINEAR: LinkEntry = LinkEntry {
         Parameter::numbers(
             "thresholds",
             "m",
-            Range::NOT_NEGATIVE,
-            "lengths at which the slope changes, ascending",
+            Range::ANY,
+            "lengths at which the slope changes, ascending; below 0 of links along an axis only",
         ),
         Parameter::numbers("slopes", "N/m", Range::ANY, "of the pushing force, one more than thresholds"),
-        Parameter::number("zero", "m", Range::NOT_NEGATIVE, "the length without force"),
+        Parameter::number(
+            "zero",
+            "m",
+            Range::ANY,
+            "the length without force; below 0 of links along an axis only",
+        ),
         DAMPING,
     ],
     build: |making| {
         let values = making.values;
         let (thresholds, slopes) = (values.numbers("thresholds"), values.numbers("slopes"));
-        let damping = values.number("damping") / making.timestep;
-        Ok(Box::new(InLanes(Piecewise::new(thresholds, slopes, values.number("zero"), damping)?)))
+        let (zero, damping) = (values.number("zero"), values.number("damping") / making.timestep);
+        let least = making.least_length();
+        let too_low = |parameter, value: String| LinkError::Unfit {
+            parameter,
+            value,
+            expected: "the length of a link in space is never below 0; of one `along` an axis it has a sign"
+                .to_owned(),
+        };
+        if thresholds.iter().any(|threshold| *threshold < least) {
+            return Err(too_low("thresholds", format!("{thresholds:?}")));
+        }
+        if zero < least {
+            return Err(too_low("zero", format!("{zero}")));
+        }
+        Ok(Box::new(InLanes(Piecewise::new(thresholds, slopes, zero, damping)?)))
     },
 };
 

@@ -268,6 +268,7 @@ mod tests {
     use souple_table::{Value, Values};
 
     use super::*;
+    use crate::network::Span;
     use crate::network::law::{Making, Moment};
 
     /// Pieces stay within their error of the exponential, reach it somewhere, grow stiffer with depth, and halving their number
@@ -285,7 +286,9 @@ mod tests {
                 .with("error", Value::Number(error))
                 .with("deepest", Value::Number(deepest));
             let values = EXPONENTIAL_PIECES.values(values).unwrap();
-            let law = (EXPONENTIAL_PIECES.build)(&Making { values: &values, timestep: 1e-3 }).unwrap();
+            let law =
+                (EXPONENTIAL_PIECES.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance })
+                    .unwrap();
             let push = |x: f64| {
                 let reach = Reach { length: 1.0 - x, before: 1.0 - x, rest: 1.0 };
                 law.respond(&reach, &Moment::of(0.0), &[]).push

@@ -51,7 +51,13 @@ pub fn wiring(draft: &Draft, body: &Placed, network: &Network, name: &str, law: 
                     None => {
                         let message =
                             format!("the law of the links `{name}` has no `{parameter}` that can be driven");
-                        refuse(message, one_of(&known));
+                        let expected = match &known[..] {
+                            [] => "`connects`, which works on any law, or a law whose numbers can be driven: `spring_damper`, `ball`, \
+                                   or a `formula` with `parameters`"
+                                .to_owned(),
+                            known => one_of(known),
+                        };
+                        refuse(message, expected);
                     }
                     Some(register) if wiring.registers.iter().any(|(other, _)| *other == register) => {
                         refuse(

@@ -1,0 +1,216 @@
+//! Whether the masses of networks bear the steps they are taken in.
+//!
+//! At a mass `2 Σ H` over interactions with free masses and `Σ H` over those with fixed ones must stay below `4 m/Te²`, by
+//! Gershgorin's theorem on the Laplacian of the links, with `H = K + 2Z` of a spring and damper. Links are always there; those
+//! that a mass meets in crowds are counted as in a dense heap.
+
+use std::ops::Range;
+
+use souple_engine::Force;
+use souple_engine::steppers::Stability;
+use souple_formal::Formula;
+use souple_math::Vec3;
+use souple_models::network::{Crowd, Links};
+
+use super::super::Draft;
+use super::super::bodies::Placed;
+use crate::spec::network::Network;
+
+/// Balls of one size that touch one among them at once, by the axes that they move along.
+const TOUCHING: [usize; 4] = [0, 2, 6, 12];
+
+/// What one mass may meet in a crowd.
+#[derive(Clone, Copy)]
+struct Company {
+    /// Number of the crowd among those of the body.
+    crowd: usize,
+    /// What each neighbour takes of the bound [N/m].
+    load: f64,
+    count: usize,
+}
+
+/// How a crowd is peopled.
+struct Peopled<'a> {
+    crowd: &'a Crowd,
+    /// Of the first group and of the second: rows within the body, and how many of them are free and how many fixed.
+    groups: [(Range<usize>, [usize; 2]); 2],
+}
+
+impl Peopled<'_> {
+    /// Who else of the crowd a mass may meet, free and fixed ones.
+    fn others(&self, mass: usize, is_fixed: bool) -> [usize; 2] {
+        let [(first, in_first), (second, in_second)] = &self.groups;
+        let met = match (first.contains(&mass), second.contains(&mass)) {
+            (true, true) => {
+                let mut others = *in_first;
+                others[usize::from(is_fixed)] -= 1;
+                return others;
+            }
+            (true, false) => in_second,
+            (false, true) => in_first,
+            (false, false) => return [0; 2],
+        };
+        *met
+    }
+}
+
+/// Warns of masses whose links and possible neighbours are too stiff for an explicit step.
+pub fn warn_of_steps(draft: &mut Draft) {
+    let warnings: Vec<String> =
+        draft.bodies.iter().filter_map(|body| of_body(draft, body, body.spec.network.as_ref()?)).collect();
+    draft.warnings.extend(warnings);
+}
+
+fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
+    let system = &draft.systems[body.system];
+    if !matches!(system.stepper.stability(), Stability::Limited(_)) {
+        return None;
+    }
+    let spec = &draft.spec.systems[body.system];
+    let timestep = system.stepper.interval(draft.spec.world.period / f64::from(spec.steps_per_period));
+    let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
+    let loads = of_links(draft, body, &is_fixed);
+    let crowds = crowds_of(draft, body, &is_fixed);
+    let most = TOUCHING[free_axes(draft, body, network)];
+    let places = places(body, &crowds, most);
+    let mut company = Vec::new();
+    let mut worst: Option<(usize, f64)> = None;
+    for (mass, load) in loads.iter().enumerate().filter(|(mass, _)| !is_fixed[*mass]) {
+        meet(&crowds, mass, places[mass], &mut company);
+        let met: f64 = company.iter().map(|one| one.count as f64 * one.load).sum();
+        let bound = 4.0 * system.mass.diagonal[body.rows.start + mass] / (timestep * timestep);
+        let share = (load + met) / bound;
+        if worst.is_none_or(|(_, known)| share > known) {
+            worst = Some((mass, share));
+        }
+    }
+    let (mass, share) = worst.filter(|(_, share)| *share > 1.0)?;
+    meet(&crowds, mass, places[mass], &mut company);
+    let met = (0..crowds.len()).filter_map(|crowd| {
+        let count: usize = company.iter().filter(|one| one.crowd == crowd).map(|one| one.count).sum();
+        (count > 0).then(|| format!("{count} in crowd `{}`", crowds[crowd].crowd.name()))
+    });
+    let met: Vec<String> = met.collect();
+    let whose = match (loads[mass] > 0.0, met.is_empty()) {
+        (_, true) => "of the links".to_owned(),
+        (true, false) => {
+            format!("of the links, and of neighbours as in a dense heap, {},", met.join(" and "))
+        }
+        (false, false) => format!("of neighbours as in a dense heap, {},", met.join(" and ")),
+    };
+    Some(format!(
+        "{}: K + 2Z {whose} at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
+         the network may be unstable; a step of {:.3e} s is safe",
+        draft.place(&body.spec.site),
+        body.spec.name,
+        timestep / share,
+    ))
+}
+
+/// What links take of the bound at each mass [N/m].
+fn of_links(draft: &Draft, body: &Placed, is_fixed: &[bool]) -> Vec<f64> {
+    let mut loads = vec![0.0; body.mesh.points.len()];
+    for (index, links) in body.links.iter().enumerate() {
+        let name = format!("{}.links[{index}]", body.spec.name);
+        let force = draft.systems[body.system].forces.iter().find(|force| force.name() == name);
+        let Some(law) = force.and_then(|force| force.as_any().downcast_ref::<Links>()) else { continue };
+        for [a, b] in links.ends.iter().map(|ends| ends.map(|end| end as usize)) {
+            loads[a] += law.stiffest() * if is_fixed[b] { 1.0 } else { 2.0 };
+            loads[b] += law.stiffest() * if is_fixed[a] { 1.0 } else { 2.0 };
+        }
+    }
+    loads
+}
+
+fn crowds_of<'a>(draft: &'a Draft, body: &Placed, is_fixed: &[bool]) -> Vec<Peopled<'a>> {
+    let peopled = |rows: Range<u32>| {
+        let own = rows.start as usize - body.rows.start..rows.end as usize - body.rows.start;
+        let fixed = is_fixed[own.clone()].iter().filter(|is_fixed| **is_fixed).count();
+        let free = own.len() - fixed;
+        (own, [free, fixed])
+    };
+    let forces = draft.systems[body.system].forces.iter();
+    forces
+        .filter_map(|force| force.as_any().downcast_ref::<Crowd>())
+        .filter(|crowd| {
+            let is_here = |rows: &Range<u32>| {
+                body.rows.start <= rows.start as usize && rows.end as usize <= body.rows.end
+            };
+            crowd.rows().iter().all(is_here)
+        })
+        .map(|crowd| Peopled { crowd, groups: crowd.rows().map(peopled) })
+        .collect()
+}
+
+/// Puts `most` neighbours around a mass, the stiffest of those that there are.
+fn meet(crowds: &[Peopled], mass: usize, most: usize, company: &mut Vec<Company>) {
+    company.clear();
+    for (index, peopled) in crowds.iter().enumerate() {
+        let [free, fixed] = peopled.others(mass, false);
+        let stiffest = peopled.crowd.stiffest();
+        company.push(Company { crowd: index, load: 2.0 * stiffest, count: free });
+        company.push(Company { crowd: index, load: stiffest, count: fixed });
+    }
+    company.sort_by(|a, b| b.load.total_cmp(&a.load));
+    let mut room = most;
+    for one in company {
+        one.count = one.count.min(room);
+        room -= one.count;
+    }
+}
+
+/// Neighbours that find a place around each mass, of `most` in all: those that it is linked to are there already, but for the
+/// quarter that a flat surface of close-packed balls leaves to others.
+fn places(body: &Placed, crowds: &[Peopled], most: usize) -> Vec<usize> {
+    let mut linked = vec![0; body.mesh.points.len()];
+    // no ball fits between two that are nearer than twice its size
+    let near = 2.0 * crowds.iter().map(|peopled| peopled.crowd.range()).fold(0.0, f64::max);
+    for links in &body.links {
+        let short = links.ends.iter().zip(&links.lengths).filter(|(_, length)| length.abs() < near);
+        for end in short.flat_map(|(ends, _)| ends) {
+            // points of view are behind the masses
+            if let Some(count) = linked.get_mut(*end as usize) {
+                *count += 1;
+            }
+        }
+    }
+    linked.into_iter().map(|linked| most.saturating_sub(linked).max(most.div_ceil(4))).collect()
+}
+
+/// Axes along which masses of a body may move: pins hold all of them along the others, or all lie in a plane that nothing drives
+/// them out of.
+fn free_axes(draft: &Draft, body: &Placed, network: &Network) -> usize {
+    let system = &draft.systems[body.system];
+    let mut held = vec![0_u8; body.rows.len()];
+    for constraint in &system.constraints {
+        let row = system.kinematics.row_of_block(constraint.block).map(|row| row as usize);
+        let Some(row) = row.filter(|row| body.rows.contains(row)) else { continue };
+        for axis in (0..3).filter(|axis| constraint.free * Vec3::AXES[*axis] == Vec3::ZERO) {
+            held[row - body.rows.start] |= 1 << axis;
+        }
+    }
+    let spec = body.spec;
+    let is_left_alone = spec.loads.is_empty()
+        && spec.start.is_none()
+        && spec.angular_velocity == Vec3::ZERO
+        && spec.pins.iter().all(|pin| pin.motion.is_none() && pin.bone.is_none())
+        && draft.spec.contacts.is_empty()
+        && draft.spec.hands.is_empty();
+    let is_plane = |axis: usize| {
+        let place = body.mesh.points.first().map_or(0.0, |point| point[axis]);
+        is_left_alone
+            && draft.spec.world.gravity.as_ref().is_none_or(|gravity| is_nothing(&gravity[axis]))
+            && spec.velocity[axis] == 0.0
+            && network.masses.iter().all(|group| group.velocity[axis] == 0.0)
+            && body.mesh.points.iter().all(|point| point[axis] == place)
+    };
+    let is_free = |axis: &usize| held.iter().any(|held| held & (1 << axis) == 0) && !is_plane(*axis);
+    (0..3).filter(is_free).count()
+}
+
+/// Whether a formula is zero whatever its variables are.
+fn is_nothing(formula: &Formula) -> bool {
+    let count = formula.variables().len();
+    let is_constant = !(0..count).any(|variable| formula.depends_on(variable));
+    is_constant && formula.evaluate(&vec![0.0; count]) == 0.0
+}
