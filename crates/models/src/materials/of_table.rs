@@ -13,8 +13,11 @@ use super::{AnyLaw, Lame, Material, MaterialLaw, TextLaw, WRITTEN_LAWS};
 const SOUGHT: [AnyLaw; 4] =
     [AnyLaw::Linear, AnyLaw::StVenantKirchhoff, AnyLaw::Corotational, AnyLaw::StableNeoHookean];
 
-/// Each of them multiplied out, what its energy has of `μ` and of `λ`; and what the variables of that stand for.
-static KNOWN: LazyLock<(Expansion, Vec<(AnyLaw, [Expanded; 2])>)> = LazyLock::new(|| {
+/// A law of the table multiplied out: what its energy has of `μ` and of `λ`.
+type MultipliedOut = (AnyLaw, [Expanded; 2]);
+
+/// All that are looked for, and what the variables of their expansions stand for.
+static KNOWN: LazyLock<(Expansion, Vec<MultipliedOut>)> = LazyLock::new(|| {
     let mut expansion = Expansion::default();
     let known = SOUGHT.into_iter().filter_map(|law| Some((law, of_moduli(law, &mut expansion)?))).collect();
     (expansion, known)
@@ -97,6 +100,9 @@ mod tests {
     use super::*;
     use crate::materials::law_text;
 
+    /// A text, its parameters, and the law that it is with `μ` and `λ` [Pa].
+    type Wording<'a> = (&'a str, &'a [(&'a str, &'a str)], AnyLaw, [f64; 2]);
+
     /// `λ` and `μ` of the texts [Pa].
     const MODULI: [(&str, &str); 2] = [("lambda", "20 kPa"), ("mu", "10 kPa")];
 
@@ -125,7 +131,7 @@ mod tests {
         // m = 4/3 μ, l = λ + 5/6 μ
         let of_m = [3.75e6, 8e6 - 5.0 / 6.0 * 3.75e6];
         let lame = [1e4, 2e4];
-        let in_other_words: [(&str, &[(&str, &str)], AnyLaw, [f64; 2]); 8] = [
+        let in_other_words: [Wording; 8] = [
             ("l/2*(J - 1)^2 - 3/4*m*(J - 1) + m/2*(I1 - 3 - log((I1 + 1)/4))", &M, stable, of_m),
             ("m/2*(I1 - 3) + l/2*(J - 1 - 3/4*m/l)^2 + m*log(2/sqrt(I1 + 1))", &M, stable, of_m),
             (
