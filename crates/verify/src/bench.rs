@@ -294,6 +294,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| laws::law_text_table("law_text_table", 1.3, effort),
     },
     Bench {
+        name: "law_text_reworded",
+        what: "the same of laws of the table in other words than those of the library [x built-in]",
+        run: |effort| laws::law_text_reworded("law_text_reworded", 1.3, effort),
+    },
+    Bench {
         name: "law_text_scalar",
         what: "the same with the law written entry by entry [x built-in]",
         run: |effort| laws::law_text("law_text_scalar", laws::Writing::Scalars, 2.5, effort),

@@ -5,7 +5,7 @@ use std::time::Instant;
 use souple_engine::{TangentWeights, World};
 use souple_math::Vec3;
 use souple_mesh::ElementKind;
-use souple_models::materials::{KeptLaws, TextLaw, WRITTEN_LAWS};
+use souple_models::materials::{KeptLaws, TextLaw, WRITTEN_LAWS, WrittenLaw};
 
 use super::timing::{Clock, Held, Timed, Timing, bend, median, over, scene, thread_counts, with_threads};
 use super::{Effort, Figure};
@@ -124,46 +124,123 @@ pub const TABLE: [OfTable; 8] = [
     ),
 ];
 
+/// A text and a law of the table that it is: the name of the law and its numbers; energy, definitions and numbers of the text.
+struct Wording<'a> {
+    law: &'static str,
+    of_table: &'static str,
+    energy: &'a str,
+    definitions: &'a [(&'static str, &'static str)],
+    of_text: &'static str,
+}
+
+/// Laws in other words than those of the library: addends in another order, other moduli, sums that are multiplied out.
+const REWORDED: [Wording; 6] = [
+    Wording {
+        law: "linear",
+        of_table: MODULI,
+        energy: "mu*tr(eps*eps) + 1/2*lambda*tr(eps)*tr(eps)",
+        definitions: &[],
+        of_text: LAME,
+    },
+    Wording {
+        law: "st_venant_kirchhoff",
+        of_table: MODULI,
+        energy: "lambda/8*(I1 - 3)^2 + mu*tr(E*E)",
+        definitions: &[],
+        of_text: LAME,
+    },
+    Wording {
+        law: "corotational",
+        of_table: MODULI,
+        energy: "lambda/2*(l1 + l2 + l3 - 3)^2 + mu*((l3 - 1)^2 + (l2 - 1)^2 + (l1 - 1)^2)",
+        definitions: &[],
+        of_text: LAME,
+    },
+    Wording {
+        law: "neo_hookean",
+        of_table: MODULI,
+        energy: "lambda/2*log(J)^2 + mu/2*(I1 - 3) - mu*log(J)",
+        definitions: &[],
+        of_text: LAME,
+    },
+    // m = 4/3 mu and l = lambda + 5/6 mu
+    Wording {
+        law: "stable_neo_hookean",
+        of_table: MODULI,
+        energy: "l/2*(J - 1)^2 - 3/4*m*(J - 1) + m/2*(I1 - 3 - log((I1 + 1)/4))",
+        definitions: &[("m", "4/3*mu"), ("l", "lambda + 5/6*mu")],
+        of_text: LAME,
+    },
+    Wording {
+        law: "mooney_rivlin",
+        of_table: "c10 = 1.5e6, c01 = 5e5, bulk_modulus = 8e6",
+        energy: "k/2*(J - 1)^2 + c01*(I2_bar - 3) + c10*(I1_bar - 3)",
+        definitions: &[],
+        of_text: "c10 = \"1.5e6 Pa\", c01 = \"5e5 Pa\", k = \"8e6 Pa\"",
+    },
+];
+
 /// Every law of the table as it is written in the library against itself, on complete explicit steps of each kind of element and on
 /// implicit ones of tetrahedra.
 pub fn law_text_table(name: &str, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
-    const EXPLICIT: [&str; 2] = [r#"world.period="10 us""#, r#"systems.main.stepper="symplectic_euler""#];
-    const IMPLICIT: [&str; 1] =
-        [r#"systems.main.stepper={ name = "backward_euler", newton = "one", solver_tolerance = 1e-6 }"#];
     let mut figures = Vec::new();
     for (law, of_table, of_text) in TABLE {
         let written =
             WRITTEN_LAWS.iter().find(|written| written.name == law).ok_or("every law has a text")?;
-        let definitions: Vec<String> =
-            written.definitions.iter().map(|(name, part)| format!("{name} = \"{part}\"")).collect();
-        let materials = [
-            format!("bodies.bar.material={{ name = \"{law}\", {of_table}, density = 1000 }}"),
-            format!(
-                "bodies.bar.material={{ name = \"hyperelastic\", energy = \"{}\", definitions = {{ {} }}, parameters = {{ {of_text} }}, density = 1000 }}",
-                written.energy,
-                definitions.join(", "),
-            ),
-        ];
-        let explicit =
-            ["tet4", "hex8", "prism6", "pyramid5", "tri3"].map(|element| (element, "", &EXPLICIT[..]));
-        for (element, manner, stepper) in explicit.into_iter().chain([("tet4", "_implicit", &IMPLICIT[..])]) {
-            let settings = materials.each_ref().map(|material| {
-                let cells = if element == "tri3" { 24 } else { 5 };
-                let mut settings = bar(element, cells, law);
-                // the law that the bar was made with gives way
-                settings.pop();
-                settings.extend(stepper.iter().map(|setting| (*setting).to_owned()));
-                settings.push(material.clone());
-                settings
-            });
-            let [known, text] = &settings;
-            figures.push(text_over_known(
-                &format!("{name}_{law}_{element}{manner}"),
-                [known, text],
-                most,
-                effort,
-            )?);
-        }
+        let WrittenLaw { energy, definitions, .. } = *written;
+        figures.extend(wording(
+            name,
+            &Wording { law, of_table, energy, definitions, of_text },
+            most,
+            effort,
+        )?);
+    }
+    Ok(figures)
+}
+
+/// The same of laws in other words.
+pub fn law_text_reworded(name: &str, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
+    let mut figures = Vec::new();
+    for reworded in &REWORDED {
+        figures.extend(wording(name, reworded, most, effort)?);
+    }
+    Ok(figures)
+}
+
+/// A text against its law on every kind of step.
+fn wording(name: &str, wording: &Wording, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
+    const EXPLICIT: [&str; 2] = [r#"world.period="10 us""#, r#"systems.main.stepper="symplectic_euler""#];
+    const IMPLICIT: [&str; 1] =
+        [r#"systems.main.stepper={ name = "backward_euler", newton = "one", solver_tolerance = 1e-6 }"#];
+    let Wording { law, of_table, energy, definitions, of_text } = *wording;
+    let definitions: Vec<String> =
+        definitions.iter().map(|(name, part)| format!("{name} = \"{part}\"")).collect();
+    let definitions = definitions.join(", ");
+    let materials = [
+        format!("bodies.bar.material={{ name = \"{law}\", {of_table}, density = 1000 }}"),
+        format!(
+            "bodies.bar.material={{ name = \"hyperelastic\", energy = \"{energy}\", definitions = {{ {definitions} }}, parameters = {{ {of_text} }}, density = 1000 }}",
+        ),
+    ];
+    let explicit = ["tet4", "hex8", "prism6", "pyramid5", "tri3"].map(|element| (element, "", &EXPLICIT[..]));
+    let mut figures = Vec::new();
+    for (element, manner, stepper) in explicit.into_iter().chain([("tet4", "_implicit", &IMPLICIT[..])]) {
+        let settings = materials.each_ref().map(|material| {
+            let cells = if element == "tri3" { 24 } else { 5 };
+            let mut settings = bar(element, cells, law);
+            // the law that the bar was made with gives way
+            settings.pop();
+            settings.extend(stepper.iter().map(|setting| (*setting).to_owned()));
+            settings.push(material.clone());
+            settings
+        });
+        let [known, text] = &settings;
+        figures.push(text_over_known(
+            &format!("{name}_{law}_{element}{manner}"),
+            [known, text],
+            most,
+            effort,
+        )?);
     }
     Ok(figures)
 }
