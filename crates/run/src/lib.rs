@@ -14,6 +14,7 @@ mod frequencies;
 mod governor;
 mod in_time;
 mod in_time_report;
+mod leaps;
 mod links;
 mod machine;
 mod monitor;

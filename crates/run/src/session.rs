@@ -12,6 +12,7 @@ use souple_scene::{
 
 use crate::failure::Failure;
 use crate::frames::solid_of;
+use crate::leaps::Leaps;
 use crate::machine::peak_bytes;
 use crate::monitor::{Grown, Monitor};
 use crate::recording::{Recording, add_hash};
@@ -36,6 +37,7 @@ pub struct Session {
     pub warnings: Vec<String>,
     /// What watches its energy, where the scene asks for it.
     pub monitor: Option<Monitor>,
+    leaps: Leaps,
     /// Why it cannot go on.
     pub failure: Option<Failure>,
     pub first_step: u64,
@@ -119,6 +121,7 @@ impl Session {
             adjustables,
             warnings,
             monitor: run.monitor.map(|spec| Monitor::new(spec, &mut world)),
+            leaps: Leaps::default(),
             failure: None,
             around: AroundSteps::default(),
             clock: Instant::now(),
@@ -147,6 +150,7 @@ impl Session {
             Ok(()) => {
                 self.solver.merge(self.world.last_report());
                 self.note_changes(&before);
+                self.warnings.extend(self.leaps.look(&self.world));
                 Stepped::On
             }
             Err(error) if error.error == StepError::Interrupted => Stepped::BrokenOff,

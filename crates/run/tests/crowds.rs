@@ -153,3 +153,25 @@ fn layers_keep_apart_what_is_never_near() {
     // 263 masses of the inner layers and 234 stones
     assert!(last(&all, "interactions") - last(&apart, "interactions") == 263.0 * 234.0);
 }
+
+/// A ball that goes by more than the range in a step is told to have passed through, once; one that goes by less, or along with
+/// the other, is not.
+#[test]
+fn balls_that_jump_over_others_are_told() {
+    let told = |speed: &str, held: &str| -> Vec<String> {
+        let ball = format!("networks.n.masses.ball.velocity={speed}");
+        let other = format!("networks.n.masses.held.velocity={held}");
+        let settings = [ball.as_str(), &other, "networks.n.masses.held.fixed=false", "run.duration=\"5 ms\""];
+        let mut warnings = go(PASSING, &settings).report.warnings;
+        warnings.retain(|warning| warning.contains("passed through each other"));
+        warnings
+    };
+    // the range is 1.5 m, a step 1 ms
+    assert!(told("[1490, 0, 0]", "[0, 0, 0]").is_empty());
+    assert!(told("[1510, 0, 0]", "[100, 0, 0]").is_empty());
+    let said = told("[1510, 0, 0]", "[0, 0, 0]");
+    assert!(
+        said.len() == 1 && said[0].contains("crowd `n.crowds[0]`") && said[0].contains("2 balls"),
+        "{said:?}"
+    );
+}
