@@ -1,8 +1,8 @@
 //! Watches balls that move farther in a step than their law reaches: they jump over each other, and no force feels it.
 //!
-//! What a crowd does to a ball depends on where it is between two steps only. A ball that goes by the range or more in one step,
-//! against the mean of those it may meet, passes through them; after steps that are too long this is how a heap bursts. It is told
-//! once of each crowd.
+//! What a crowd does to a ball depends on where it is between two steps only. A ball that goes by the range or more in one step, against
+//! the mean of those of its crowd, passes through any that is in its way, near or not: whether one is, is not looked at. After steps that
+//! are too long this is how a heap bursts. It is told once of each crowd.
 
 use std::ops::Range;
 
@@ -33,8 +33,8 @@ impl Leaps {
                 if count > 0 {
                     self.told.push((index, number));
                     said.push(format!(
-                        "passed through each other: at {} s {} of crowd `{}` moved farther in a step than its range of {} m, the fastest {} m: \
-                         what jumps over others does not feel them, and the motion from then on is not to be trusted; take shorter steps \
+                        "may have passed through each other: at {} s {} of crowd `{}` moved farther in a step than its range of {} m, the fastest {} m: \
+                         what jumps over others does not feel them; if any were in the way, take shorter steps \
                          (`souple check` tells which a dense heap bears)",
                         readable(world.time()),
                         counted(count as u64, "ball"),
@@ -56,7 +56,7 @@ fn faster(groups: [Range<u32>; 2], velocities: &[Vec3], speed: f64) -> (usize, f
     let (mut count, mut fastest_sq) = (0, 0.0_f64);
     let mut meet = |own: &[Vec3], others: &[Vec3]| {
         let sum: Vec3 = others.iter().copied().sum();
-        let others = others.len() - usize::from(is_one);
+        let others = others.len().saturating_sub(usize::from(is_one));
         if others == 0 {
             return;
         }

@@ -6,8 +6,12 @@
 
 use souple_formal::{BinaryOperator, Expression, Formula, NodeId, NodeKind, UnaryOperator};
 
-/// Cases that are looked at, at most; of conditions with more nothing is said.
+/// Cases that are looked at for one condition, at most; of those with more nothing is said.
 const CASES_MAX: usize = 1 << 16;
+/// Conditions that are looked at in a case for all that is asked: a fraction of a second. Of what is asked beyond it nothing is said.
+const WORK_MAX: usize = 1 << 20;
+/// Bytes of a condition that is taken apart: what it is made of is nested no deeper, and is looked at by functions that call themselves.
+const LENGTH_MAX: usize = 4096;
 
 /// A condition by what it is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +41,8 @@ pub struct Questions<'a> {
     lows: Vec<f64>,
     /// What is no comparison of a variable with a number.
     others: Vec<String>,
+    /// What is left of [`WORK_MAX`].
+    work: usize,
 }
 
 impl<'a> Questions<'a> {
@@ -44,7 +50,7 @@ impl<'a> Questions<'a> {
     pub fn new(names: &'a [&'a str], values: &'a [f64], low: impl Fn(&str) -> f64) -> Self {
         let known_from = names.len() - values.len();
         let lows = names[..known_from].iter().map(|name| low(name)).collect();
-        Self { names, values, known_from, lows, others: Vec::new() }
+        Self { names, values, known_from, lows, others: Vec::new(), work: WORK_MAX }
     }
 
     /// What is neither known nor compared with a number: the same words are the same thing.
@@ -60,8 +66,8 @@ impl<'a> Questions<'a> {
     /// A condition that is a formula.
     pub fn read(&mut self, text: &str) -> Truth {
         match Expression::parse(text) {
-            Ok(expression) => self.truth(&expression, expression.root(), text),
-            Err(_) => self.other(text),
+            Ok(expression) if text.len() <= LENGTH_MAX => self.truth(&expression, expression.root(), text),
+            _ => self.other(text),
         }
     }
 
@@ -111,7 +117,7 @@ impl<'a> Questions<'a> {
     }
 
     /// Whether a condition can hold where none of the others does.
-    pub fn can_hold(&self, condition: &Truth, unless: &[Truth]) -> bool {
+    pub fn can_hold(&mut self, condition: &Truth, unless: &[Truth]) -> bool {
         let all = || std::iter::once(condition).chain(unless);
         let mut variables = Vec::new();
         let mut others = Vec::new();
@@ -130,7 +136,9 @@ impl<'a> Questions<'a> {
             variables.iter().map(|variable| self.samples(*variable, all())).collect();
         let counts = samples.iter().map(Vec::len).chain(others.iter().map(|_| 2));
         let count = counts.clone().try_fold(1_usize, usize::checked_mul).filter(|count| *count <= CASES_MAX);
-        let Some(count) = count else { return true };
+        let work = count.and_then(|count| self.work.checked_sub(count * (1 + unless.len())));
+        let (Some(count), Some(work)) = (count, work) else { return true };
+        self.work = work;
         let (mut values, mut answers) = (vec![0.0; self.known_from], vec![false; self.others.len()]);
         (0..count).any(|case| {
             let mut rest = case;
@@ -238,6 +246,17 @@ mod tests {
         {
             assert!(can_hold(may, &[]), "{may}");
         }
+    }
+
+    /// Of what is too long, too much or asked too often nothing is said, and soon.
+    #[test]
+    fn what_takes_long_is_left() {
+        assert!(can_hold(&["D < 0"; 100_000].join(" or "), &[]));
+        let question = |number: usize| format!("D < {} and D > {}", -1.0 - number as f64, number);
+        let mut questions = Questions::new(NAMES, &[3.0], |_| f64::NEG_INFINITY);
+        let asked: Vec<Truth> = (0..2000).map(|number| questions.read(&question(number))).collect();
+        let known = (0..asked.len()).filter(|at| !questions.can_hold(&asked[*at], &asked[at + 1..])).count();
+        assert!(known < asked.len() && questions.can_hold(&asked[0], &asked[1..]));
     }
 
     /// What comes after a condition covers it together.

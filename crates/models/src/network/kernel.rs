@@ -30,7 +30,7 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn is_conservative(&self) -> bool;
     /// See [`LinkLaw::stiffest`]; of a link of this rest length.
     fn stiffest(&self, rest: f64) -> f64;
-    /// The same of pairs of a crowd, which come as near as half its range.
+    /// The same of pairs of a crowd, taken to come as near as half its range: what is stiffer nearer by is not seen.
     fn stiffest_within(&self, range: f64) -> f64 {
         self.stiffest(range)
     }

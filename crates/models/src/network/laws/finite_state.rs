@@ -301,12 +301,15 @@ fn check_that_all_fire(
         if questions.can_hold(&truths[at], later) {
             continue;
         }
-        let outdoes = |one: &usize| !questions.can_hold(&truths[at], std::slice::from_ref(&truths[*one]));
         let why = if !questions.can_hold(&truths[at], &[]) {
-            let is_distance = least_length == 0.0 && (condition.depends_on(0) || condition.depends_on(1));
+            let mut without_lengths = Questions::new(variables, constants, |_| f64::NEG_INFINITY);
+            let alone = without_lengths.read(said);
+            let is_distance = least_length == 0.0 && without_lengths.can_hold(&alone, &[]);
             let hint = if is_distance { ", and distances in space are not below 0" } else { "" };
             format!("`{said}` does not hold, whatever happens{hint}")
-        } else if let Some(one) = (at + 1..truths.len()).find(outdoes) {
+        } else if let Some(one) = (at + 1..truths.len())
+            .find(|one| !questions.can_hold(&truths[at], std::slice::from_ref(&truths[*one])))
+        {
             let later = state.transitions[one].0.text();
             format!("`{later}` after it holds whenever it does, and the last that holds wins")
         } else {

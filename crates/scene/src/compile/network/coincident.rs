@@ -82,9 +82,8 @@ fn meeting(cluster: &[u32], first: &Range<u32>, second: &Range<u32>, is_fixed: &
     let [moving, others] = [first, second].map(|group| of(group, false));
     let [held, others_held] = [first, second].map(|group| of(group, true));
     let pair = |a: &[u32], b: &[u32]| {
-        let a = *a.first()?;
-        let b = *b.iter().find(|b| **b != a)?;
-        Some([a.min(b), a.max(b)])
+        // groups may share masses
+        a.iter().find_map(|a| b.iter().find(|b| *b != a).map(|b| [*a.min(b), *a.max(b)]))
     };
     pair(&moving, &others).or_else(|| pair(&moving, &others_held)).or_else(|| pair(&others, &held))
 }

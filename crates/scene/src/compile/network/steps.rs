@@ -37,14 +37,14 @@ struct Peopled<'a> {
 }
 
 impl Peopled<'_> {
-    /// Who else of the crowd a mass may meet, free and fixed ones.
-    fn others(&self, mass: usize, is_fixed: bool) -> [usize; 2] {
+    /// Who else of the crowd a free mass may meet, free and fixed ones.
+    fn others(&self, mass: usize) -> [usize; 2] {
         let [(first, in_first), (second, in_second)] = &self.groups;
         let met = match (first.contains(&mass), second.contains(&mass)) {
             (true, true) => {
-                let mut others = *in_first;
-                others[usize::from(is_fixed)] -= 1;
-                return others;
+                // groups are one, or share some
+                let [free, fixed] = [0, 1].map(|kind| in_first[kind].max(in_second[kind]));
+                return [free.saturating_sub(1), fixed];
             }
             (true, false) => in_second,
             (false, true) => in_first,
@@ -146,7 +146,7 @@ fn crowds_of<'a>(draft: &'a Draft, body: &Placed, is_fixed: &[bool]) -> Vec<Peop
 fn meet(crowds: &[Peopled], mass: usize, most: usize, company: &mut Vec<Company>) {
     company.clear();
     for (index, peopled) in crowds.iter().enumerate() {
-        let [free, fixed] = peopled.others(mass, false);
+        let [free, fixed] = peopled.others(mass);
         let stiffest = peopled.crowd.stiffest();
         company.push(Company { crowd: index, load: 2.0 * stiffest, count: free });
         company.push(Company { crowd: index, load: stiffest, count: fixed });
@@ -195,6 +195,8 @@ fn free_axes(draft: &Draft, body: &Placed, network: &Network) -> usize {
         && spec.angular_velocity == Vec3::ZERO
         && spec.pins.iter().all(|pin| pin.motion.is_none() && pin.bone.is_none())
         && draft.spec.contacts.is_empty()
+        && draft.spec.attachments.is_empty()
+        && draft.spec.couplings.is_empty()
         && draft.spec.hands.is_empty();
     let is_plane = |axis: usize| {
         let place = body.mesh.points.first().map_or(0.0, |point| point[axis]);
