@@ -376,12 +376,12 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["JIM-10", "JIM-19"],
         what: "of two conditions that hold the one written last leads on",
         settings: &[
-            r#"networks.sample.links[0].law={ name = "finite_state", states = { a = "0", b = "-1", c = "-2" }, transitions = { "a -> b" = "D > 1.001", "a -> c" = "D > 1.002" } }"#,
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { a = "0", b = "-1", c = "-2" }, transitions = { "a -> b" = "D > 1.001", "a -> c" = "D > 1.002 or D < 0.9" } }"#,
         ],
         reading: PULL.after(2),
         reference: 2.0,
         source: "specification §2.7: the last one met wins",
-        mutation: r#"networks.sample.links[0].law.transitions={ "a -> c" = "D > 1.002", "a -> b" = "D > 1.001" }"#,
+        mutation: r#"networks.sample.links[0].law.transitions={ "a -> c" = "D > 1.002 or D < 0.9", "a -> b" = "D > 1.001" }"#,
         ..PLASTIC
     },
     Case {
