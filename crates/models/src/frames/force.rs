@@ -411,7 +411,7 @@ impl Work<'_> {
             law.answer(Answer::Energy, &run, memory);
             for block in run.rows() {
                 let densities = &memory[places.result + run.lane_of(block)..];
-                for (volume, density) in chunk.samples.volumes(block).iter().zip(densities) {
+                for (volume, density) in run.volumes(block).iter().zip(densities) {
                     // lanes without a sample may have no energy at all
                     if *volume > 0.0 {
                         sum += volume * density;
@@ -460,7 +460,7 @@ fn make_definite(run: &Run, tangents: &mut [f64], workspace: &mut dense::Workspa
     let lanes = run.rows().flat_map(|row| (0..LANES).map(move |lane| (row, lane)));
     for (row, lane) in lanes {
         // lanes without a sample have no volume, and nothing to say
-        if run.chunk.volumes(row)[lane] == 0.0 {
+        if run.volumes(row)[lane] == 0.0 {
             continue;
         }
         let place = |entry: usize| entry * BATCH + run.lane_of(row) + lane;

@@ -139,7 +139,7 @@ impl WithSimd for Spread<'_> {
         let mut lane = 0;
         while lane < LANES {
             for block in run.rows() {
-                let volume = Lanes::load(simd, &chunk.samples.volumes(block)[lane..]);
+                let volume = Lanes::load(simd, &run.volumes(block)[lane..]);
                 let stresses = &mut stresses[run.lane_of(block) + lane..];
                 store_matrix(&load_matrix(simd, stresses).scaled(volume * scale), stresses);
             }
@@ -214,7 +214,7 @@ impl WithSimd for Blocks<'_> {
             let places = &chunk.places[chunk.place_starts[block] as usize..];
             let count = members.len();
             for (b, second) in gradients.chunks_exact(GRADIENT_LEN).enumerate() {
-                let volumes = chunk.samples.volumes(block);
+                let volumes = run.volumes(block);
                 fill_rates(simd, (volumes, second), &tangents[run.lane_of(block)..], scale, rates);
                 // pairs are listed line by line: (a, b) is the (b - a)-th of line a
                 let mut line = 0;

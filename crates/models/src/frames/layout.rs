@@ -132,7 +132,7 @@ impl Chunk {
 
     /// Volume of a sample at rest [m³].
     pub fn volume(&self, sample: usize) -> f64 {
-        self.samples.volumes(sample / LANES)[sample % LANES]
+        self.samples.volumes(sample / LANES, 0, 1)[sample % LANES]
     }
 
     /// Forces on the rows of own frame number `own` from those on its map: the transpose of [`Chunk::maps_of`].

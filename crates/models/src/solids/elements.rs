@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use souple_math::{Padded, Vec3};
 use souple_mesh::{ElementKind, QuadratureRule};
 
-use super::layout::{self, Chunk, FlatCell, LANES};
+use super::layout::{self, Alike, Chunk, FlatCell, LANES};
 use super::{SolidDescription, parallel};
 
 /// Rows gathered by one task.
@@ -52,6 +52,10 @@ pub trait Sorting {
     /// Numbers of a cell, as many for every cell of its law.
     fn parameters_of(&self, cell: usize) -> &[f64];
     fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, law: &Self::Law) -> Self::Kernel;
+    /// What the cells of a law have in common besides.
+    fn alike(&self, _law: &Self::Law) -> Alike {
+        Alike::IN_KIND
+    }
     /// How many blocks of lanes a kernel likes to be asked for at once.
     fn blocks_at_once(&self, _kernel: &Self::Kernel) -> usize {
         1
@@ -95,7 +99,8 @@ impl<K: Send + Sync> Elements<K> {
                 measure: section.measure(),
             };
             let parameters_of = |cell: u32| sorting.parameters_of(cell as usize);
-            let mut chunks = layout::chunks(&body, &cells, &parameters_of, elements.partial_count)?;
+            let mut chunks =
+                layout::chunks(&body, &cells, &parameters_of, sorting.alike(law), elements.partial_count)?;
             (elements.chunk_count..).zip(&mut chunks).for_each(|(number, chunk)| chunk.number = number);
             elements.partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();
             let first_chunk = elements.chunk_count;

@@ -3,7 +3,7 @@
 use pulp::Simd;
 use souple_math::{Lanes, Mat3, Padded, Vec3};
 
-use super::layout::{Chunk, LANES, LaneBlock, SAMPLE_LEN};
+use super::layout::{Chunk, LANES, LaneBlock};
 use crate::materials::Parameters;
 
 /// One register's worth of elements of at most `N` nodes: lanes `lane .. lane + S::F64_LANES` of a block.
@@ -61,7 +61,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
 
     /// The group's lanes of a block of lanes.
     #[inline(always)]
-    fn load(&self, block: &LaneBlock) -> Lanes<S> {
+    pub fn load(&self, block: &LaneBlock) -> Lanes<S> {
         // lanes divide a block: said so that the load needs no check
         assert!(self.lane + S::F64_LANES <= LANES);
         Lanes::load(self.simd, &block.0[self.lane..self.lane + S::F64_LANES])
@@ -71,15 +71,14 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     #[inline(always)]
     pub fn prefetch(&self, ahead: usize, sample: usize) {
         if self.lane == 0 {
-            self.chunk.prefetch((self.block + ahead) * self.samples + sample);
+            self.chunk.prefetch(self.block + ahead, sample, self.samples);
         }
     }
 
     /// `X_ξ⁻¹` and the volume at a sample.
     #[inline(always)]
     pub fn sample(&self, sample: usize) -> (Mat3<Lanes<S>>, Lanes<S>) {
-        let start = (self.block * self.samples + sample) * SAMPLE_LEN;
-        let numbers = &self.chunk.samples()[start..start + SAMPLE_LEN];
+        let numbers = self.chunk.sample(self.block, sample, self.samples);
         let mut inverse = Mat3::zero(Lanes::constant(self.simd, 0.0));
         for column in 0..3 {
             inverse.columns[column] = Vec3::new(

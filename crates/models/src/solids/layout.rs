@@ -39,8 +39,10 @@ pub struct Chunk {
     pub rows: Vec<u32>,
     /// Chunk node of `(block, node, lane)`; lanes past the last element repeat it.
     pub connectivity: Vec<u16>,
-    /// `[block][sample][SAMPLE_LEN][lane]`; lanes past the last element have no volume.
+    /// `[stored block][sample][SAMPLE_LEN][lane]`, see [`Self::stored`]; lanes past the last element have no volume.
     samples: Vec<LaneBlock>,
+    /// Where all elements have one shape, how many blocks have as many of them as the first.
+    full_blocks: Option<usize>,
     /// `[block][parameter][lane]`, or of one block that stands for all where all elements have the same numbers.
     parameters: Vec<LaneBlock>,
     has_one_material: bool,
@@ -63,6 +65,7 @@ impl Chunk {
             rows: Vec::new(),
             connectivity: Vec::new(),
             samples: vec![LaneBlock::default(); blocks * SAMPLE_LEN],
+            full_blocks: None,
             parameters: vec![LaneBlock::default(); first.len() * if has_one_material { 1 } else { blocks }],
             has_one_material,
             first_partial: 0,
@@ -80,7 +83,7 @@ impl Chunk {
         chunk
     }
 
-    /// The cells that `keep` names, on the same nodes; elements have `nodes` and `samples`.
+    /// The cells that `keep` names, one at least, on the same nodes; elements have `nodes` and `samples`.
     pub fn part(&self, nodes: usize, samples: usize, keep: impl Fn(u32) -> bool) -> Self {
         let slots: Vec<usize> = (0..self.cells.len()).filter(|slot| keep(self.cells[*slot])).collect();
         let blocks = slots.len().div_ceil(LANES);
@@ -91,10 +94,15 @@ impl Chunk {
             cells: slots.iter().map(|slot| self.cells[*slot]).collect(),
             rows: self.rows.clone(),
             connectivity: vec![0; blocks * nodes * LANES],
-            samples: vec![LaneBlock::default(); blocks * numbers],
+            samples: Vec::new(),
+            full_blocks: self.full_blocks.map(|_| full_blocks(slots.len())),
             parameters: vec![LaneBlock::default(); parameter_blocks * parameters],
             has_one_material: self.has_one_material,
             ..*self
+        };
+        part.samples = match part.full_blocks {
+            Some(_) => samples_of_one_shape(&self.samples[..numbers], slots.len()),
+            None => vec![LaneBlock::default(); blocks * numbers],
         };
         for to in 0..blocks * LANES {
             let (lane, block) = (to / blocks, to % blocks);
@@ -105,7 +113,8 @@ impl Chunk {
                 part.connectivity[(block * nodes + node) * LANES + lane] =
                     self.connectivity[(from_block * nodes + node) * LANES + from_lane];
             }
-            for number in 0..numbers {
+            let own_numbers = if part.full_blocks.is_some() { 0 } else { numbers };
+            for number in 0..own_numbers {
                 let is_volume = number % SAMPLE_LEN == SAMPLE_LEN - 1;
                 part.samples[block * numbers + number].0[lane] = if is_volume && to >= slots.len() {
                     0.0
@@ -133,18 +142,32 @@ impl Chunk {
         (self.cells.len() - block).div_ceil(self.block_count()).min(LANES)
     }
 
-    /// `[block][sample][SAMPLE_LEN]`.
+    /// Which of the blocks of samples is that of `block`: its own, or, of elements of one shape, the first, and the second where
+    /// `block` has an element less than the first.
     #[inline(always)]
-    pub fn samples(&self) -> &[LaneBlock] {
-        &self.samples
+    fn stored(&self, block: usize) -> usize {
+        match self.full_blocks {
+            Some(full) => usize::from(block >= full),
+            None => block,
+        }
     }
 
-    /// Asks for the numbers of the samples in row `row`, which counts samples block after block, if there are any, before they
-    /// are used: they are read once a pass from far away, and elements are done faster than the processor's own guesses bring
-    /// them.
+    /// `[SAMPLE_LEN]` of a sample of a block, of `count` that each element has.
     #[inline(always)]
-    pub fn prefetch(&self, row: usize) {
-        if let Some(lines) = self.samples.get(row * SAMPLE_LEN..(row + 1) * SAMPLE_LEN) {
+    pub fn sample(&self, block: usize, sample: usize, count: usize) -> &[LaneBlock] {
+        let start = (self.stored(block) * count + sample) * SAMPLE_LEN;
+        &self.samples[start..start + SAMPLE_LEN]
+    }
+
+    /// Asks for the numbers of a sample of a block, if there is one, before they are used: they are read once a pass from far
+    /// away, and elements are done faster than the processor's own guesses bring them. Those of one shape are near.
+    #[inline(always)]
+    pub fn prefetch(&self, block: usize, sample: usize, count: usize) {
+        if self.full_blocks.is_some() {
+            return;
+        }
+        let start = (block * count + sample) * SAMPLE_LEN;
+        if let Some(lines) = self.samples.get(start..start + SAMPLE_LEN) {
             for line in lines {
                 souple_math::prefetch(line);
             }
@@ -154,15 +177,21 @@ impl Chunk {
     /// `X_ξ⁻¹` and the volume of the chunk's `slot`-th cell at a sample of `count`.
     pub fn sample_of(&self, slot: usize, sample: usize, count: usize) -> (Mat3, f64) {
         let (lane, block) = (slot / self.block_count(), slot % self.block_count());
-        let number = |i: usize| self.samples[(block * count + sample) * SAMPLE_LEN + i].0[lane];
+        let numbers = self.sample(block, sample, count);
+        let number = |i: usize| numbers[i].0[lane];
         let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
         (Mat3::from_columns(column(0), column(1), column(2)), number(9))
     }
 
-    /// Volumes of the samples in row `row`, which counts samples block after block.
+    /// The volume of the chunk's `slot`-th cell at a sample of `count`.
+    pub fn volume_of(&self, slot: usize, sample: usize, count: usize) -> f64 {
+        self.volumes(slot % self.block_count(), sample, count)[slot / self.block_count()]
+    }
+
+    /// Volumes of a sample of a block, of `count` that each element has.
     #[inline(always)]
-    pub fn volumes(&self, row: usize) -> &[f64; LANES] {
-        &self.samples[(row + 1) * SAMPLE_LEN - 1].0
+    pub fn volumes(&self, block: usize, sample: usize, count: usize) -> &[f64; LANES] {
+        &self.sample(block, sample, count)[SAMPLE_LEN - 1].0
     }
 
     /// The `count` parameters of a block's elements.
@@ -207,6 +236,40 @@ pub struct Body<'a> {
     pub measure: f64,
 }
 
+/// What the cells of chunks have in common, and how many blocks of lanes a chunk has at least.
+#[derive(Clone, Copy, Debug)]
+pub struct Alike {
+    /// All are translations of the first, but for rounding: the numbers of their samples are stored once.
+    pub has_one_shape: bool,
+    pub least_blocks: usize,
+}
+
+impl Alike {
+    /// Cells of a kind, no more.
+    pub const IN_KIND: Self = Self { has_one_shape: false, least_blocks: LEAST_BLOCKS };
+}
+
+/// Of `count` elements, how many blocks have as many as the first.
+fn full_blocks(count: usize) -> usize {
+    let blocks = count.div_ceil(LANES);
+    count - (count.div_ceil(blocks) - 1) * blocks
+}
+
+/// Samples of the blocks that `count` elements of one shape store, from those of a block whose first lane has such an element.
+fn samples_of_one_shape(of_block: &[LaneBlock], count: usize) -> Vec<LaneBlock> {
+    let blocks = count.div_ceil(LANES);
+    let lanes = count.div_ceil(blocks);
+    let stored = if full_blocks(count) < blocks { 2 } else { 1 };
+    let of_stored = |less: usize| {
+        of_block.iter().enumerate().map(move |(number, of_lanes)| {
+            let is_volume = number % SAMPLE_LEN == SAMPLE_LEN - 1;
+            let is_empty = |lane| is_volume && lane >= lanes - less;
+            LaneBlock(std::array::from_fn(|lane| if is_empty(lane) { 0.0 } else { of_lanes.0[0] }))
+        })
+    };
+    (0..stored).flat_map(of_stored).collect()
+}
+
 /// Lays out `cells` (numbers, all of one kind) into chunks; `parameters_of` gives as many numbers for each.
 ///
 /// # Errors
@@ -215,9 +278,10 @@ pub fn chunks<'p>(
     body: &Body,
     cells: &[u32],
     parameters_of: &dyn Fn(u32) -> &'p [f64],
+    alike: Alike,
     first_partial: usize,
 ) -> Result<Vec<Chunk>, FlatCell> {
-    let per_chunk = (SAMPLES_PER_CHUNK / body.rule.points.len() / LANES).max(LEAST_BLOCKS) * LANES;
+    let per_chunk = (SAMPLES_PER_CHUNK / body.rule.points.len() / LANES).max(alike.least_blocks) * LANES;
     // compact chunks share few nodes with others: fewer partial sums, positions that stay in cache
     let order = {
         let centres: Vec<Vec3> = cells.iter().map(|cell| body.centre(*cell)).collect();
@@ -229,7 +293,7 @@ pub fn chunks<'p>(
     for numbers in order.chunks(per_chunk) {
         members.clear();
         members.extend(numbers.iter().map(|index| cells[*index as usize]));
-        let chunk = lay_out(body, &members, parameters_of, next_partial)?;
+        let chunk = lay_out(body, &members, parameters_of, alike.has_one_shape, next_partial)?;
         next_partial += chunk.rows.len();
         chunks.push(chunk);
     }
@@ -251,6 +315,7 @@ fn lay_out<'p>(
     body: &Body,
     members: &[u32],
     parameters_of: &dyn Fn(u32) -> &'p [f64],
+    has_one_shape: bool,
     first_partial: usize,
 ) -> Result<Chunk, FlatCell> {
     let Body { mesh, first_row, rule, measure } = body;
@@ -265,10 +330,12 @@ fn lay_out<'p>(
     let parameter_count = parameters_of(members[0]).len();
     let has_one_material = members.iter().all(|cell| parameters_of(*cell) == parameters_of(members[0]));
     let parameter_blocks = if has_one_material { 1 } else { blocks };
+    let numbers = rule.points.len() * SAMPLE_LEN;
     let mut chunk = Chunk {
         cells: members.to_vec(),
         connectivity: vec![0; blocks * nodes * LANES],
-        samples: vec![LaneBlock::default(); blocks * rule.points.len() * SAMPLE_LEN],
+        samples: vec![LaneBlock::default(); if has_one_shape { numbers } else { blocks * numbers }],
+        full_blocks: has_one_shape.then(|| full_blocks(members.len())),
         parameters: vec![LaneBlock::default(); parameter_blocks * parameter_count],
         has_one_material,
         rows,
@@ -290,6 +357,9 @@ fn lay_out<'p>(
                 chunk.parameters[block * parameter_count + i].0[lane] = *number;
             }
         }
+        if has_one_shape && slot > 0 {
+            continue;
+        }
         let corners = mesh.positions_into(cell_nodes, &mut corners);
         for (sample, point) in rule.points.iter().enumerate() {
             let jacobian = kind.jacobian(corners, point.position);
@@ -303,9 +373,59 @@ fn lay_out<'p>(
             }
         }
     }
+    if has_one_shape {
+        chunk.samples = samples_of_one_shape(&chunk.samples, members.len());
+    }
     Ok(chunk)
 }
 
 fn entries(matrix: &Mat3) -> impl Iterator<Item = f64> {
     matrix.columns.into_iter().flat_map(|column| column.to_array())
+}
+
+#[cfg(test)]
+mod tests {
+    use souple_table::{Value, Values};
+
+    use super::*;
+
+    /// Chunks of a row of cells, whatever they are divided into, and parts of them.
+    fn chunks_of_row(count: usize, has_one_shape: bool) -> Vec<Chunk> {
+        let row = Value::Vector([count as f64, 1.0, 1.0]);
+        let values = Values::new().with("size", row).with("cells", row).with("element", Value::Text("hex8"));
+        let mesh = souple_mesh::generate("bar", values).unwrap();
+        let cells: Vec<u32> = (0..count as u32).collect();
+        let body = Body { mesh: &mesh, first_row: 0, rule: ElementKind::Hex8.default_rule(), measure: 1.0 };
+        let alike = Alike { has_one_shape, ..Alike::IN_KIND };
+        let whole = chunks(&body, &cells, &|_| &[], alike, 0).unwrap();
+        let parts = [2, 3, 5].into_iter().flat_map(|nth| {
+            let of_chunk = move |chunk: &Chunk| {
+                let first = chunk.cells[0];
+                chunk.part(8, 8, |cell| cell == first || cell % nth == 0)
+            };
+            whole.iter().map(of_chunk)
+        });
+        parts.chain(whole.iter().cloned()).collect()
+    }
+
+    #[test]
+    fn cells_of_one_shape_have_the_samples_of_their_own() {
+        for count in 1..70 {
+            for (alone, alike) in chunks_of_row(count, false).iter().zip(&chunks_of_row(count, true)) {
+                assert_eq!((&alone.cells, &alone.connectivity), (&alike.cells, &alike.connectivity));
+                for block in 0..alone.block_count() {
+                    for sample in 0..8 {
+                        let [of_alone, of_alike] = [alone, alike].map(|chunk| chunk.sample(block, sample, 8));
+                        let pairs = of_alone.iter().zip(of_alike).flat_map(|(a, b)| a.0.into_iter().zip(b.0));
+                        for (own, shared) in pairs {
+                            // a few roundings of the largest coordinate
+                            let is_like = (own - shared).abs() <= 8.0 * f64::EPSILON * count as f64;
+                            assert!(is_like, "{count} cells: {own} {shared}");
+                        }
+                    }
+                }
+                assert!(alike.samples.len() <= 2 * 8 * SAMPLE_LEN);
+            }
+        }
+    }
 }

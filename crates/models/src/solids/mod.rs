@@ -48,7 +48,7 @@ use eight_samples::EightSamples;
 use elements::{Batch, Elements, Sorting};
 use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
-use layout::Chunk;
+use layout::{Alike, Chunk};
 use linear_elements::{Hexahedron, Prism, Pyramid};
 use row_law::{RowLaw, row_law};
 use sample_law::{Compiled, SampleLaw, Taped};
@@ -62,7 +62,7 @@ pub use difference::DifferencedForce;
 pub(crate) use formulation::four_loop_count;
 pub(crate) use formulation::linear_pairs;
 pub use formulation::{
-    BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, formulated,
+    BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, formulated, keeps_texts,
     operator_quality,
 };
 pub use layout::FlatCell;
@@ -166,6 +166,10 @@ impl PartialEq for Class<'_> {
         (self.law, self.shape, self.map) == (other.law, other.shape, other.map)
     }
 }
+
+/// Blocks of lanes that a chunk has at least where its cells may come to have two laws: those of either law fill their last block in
+/// part only.
+const MIXED_BLOCKS: usize = 16;
 
 /// Which kernels cells without a stiffness of their own have.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -301,6 +305,14 @@ impl<'a> Sorting for ByLaw<'a> {
             Some(stiffness) => stiffness::kernel(Arc::clone(stiffness)),
             None => self.of_cells(kind, rule, class),
         }
+    }
+
+    fn alike(&self, class: &Class<'a>) -> Alike {
+        let least_blocks = match self.kernels {
+            Kernels::FastestAlike => MIXED_BLOCKS,
+            Kernels::Fastest | Kernels::Samples => Alike::IN_KIND.least_blocks,
+        };
+        Alike { has_one_shape: class.shape.is_some(), least_blocks }
     }
 
     fn blocks_at_once(&self, kernel: &Box<dyn Kernel>) -> usize {

@@ -71,7 +71,7 @@ impl SolidForce {
     pub(super) fn rest_volume_of(&self, cell: usize) -> Option<f64> {
         let (batch, chunk, slot) = self.place(cell)?;
         let samples = self.quadrature().rule(batch.kind).points.len();
-        Some((0..samples).map(|sample| chunk.sample_of(slot, sample, samples).1).sum())
+        Some((0..samples).map(|sample| chunk.volume_of(slot, sample, samples)).sum())
     }
 
     /// The deformation gradient with what the section says of the directions across, of bars in their own frame; and whether

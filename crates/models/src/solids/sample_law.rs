@@ -37,6 +37,12 @@ impl Run<'_> {
         (self.end - self.first) * LANES
     }
 
+    /// Volumes of the lanes of a row.
+    #[inline(always)]
+    pub fn volumes(&self, row: usize) -> &[f64; LANES] {
+        self.chunk.volumes(row / self.per_block, row % self.per_block, self.per_block)
+    }
+
     /// The first lane of a row in the run.
     #[inline(always)]
     pub fn lane_of(&self, row: usize) -> usize {

@@ -11,7 +11,7 @@ use souple_math::{Padded, Vec3};
 use souple_mesh::MAX_NODES;
 
 use super::kernel::Kernel;
-use super::layout::{Chunk, LANES, SAMPLE_LEN};
+use super::layout::{Chunk, LANES};
 use super::row_law::{Row, RowLaw};
 use super::section::{Completed, Section};
 
@@ -46,8 +46,7 @@ impl SectionKernel {
     ) -> impl Iterator<Item = Sample<'a>> + use<'a> {
         let (nodes, count) = (self.nodes, reference.len() / self.nodes);
         (0..count).map(move |sample| {
-            let start = (block * count + sample) * SAMPLE_LEN;
-            let numbers: &[f64] = bytemuck::cast_slice(&chunk.samples()[start..start + SAMPLE_LEN]);
+            let numbers: &[f64] = bytemuck::cast_slice(chunk.sample(block, sample, count));
             let (inverse, volume) = numbers.split_at(9 * LANES);
             Sample { inverse, volume, reference: &reference[sample * nodes..(sample + 1) * nodes] }
         })

@@ -180,7 +180,7 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
 fn integral(run: &Run, density: impl Fn(usize) -> f64) -> f64 {
     let mut sum = 0.0;
     for row in run.rows() {
-        let volumes = run.chunk.volumes(row);
+        let volumes = run.volumes(row);
         for (lane, volume) in volumes.iter().enumerate() {
             sum += volume * density(run.lane_of(row) + lane);
         }

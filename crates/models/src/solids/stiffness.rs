@@ -17,7 +17,7 @@ use super::elements::reference_gradients;
 use super::geometry::accumulate;
 use super::group::{Group, for_each_group};
 use super::kernel::Kernel;
-use super::layout::{self, Body, Chunk, FlatCell, LANES};
+use super::layout::{self, Alike, Body, Chunk, FlatCell, LANES};
 use super::{Section, SolidDescription};
 use crate::materials::MaterialLaw;
 
@@ -150,7 +150,7 @@ impl Stiffness {
     pub fn new(body: &Body, cell: u32, parameters: &[f64], law: &dyn Kernel) -> Result<Self, FlatCell> {
         let of_mesh = body.mesh.cell(cell).unwrap_or_else(|| unreachable!("a cell of the mesh"));
         let nodes = of_mesh.nodes.len();
-        let chunks = layout::chunks(body, &[cell], &|_| parameters, 0)?;
+        let chunks = layout::chunks(body, &[cell], &|_| parameters, Alike::IN_KIND, 0)?;
         let chunk = &chunks[0];
         let own_rows: Vec<Padded> = chunk
             .rows

@@ -7,10 +7,41 @@ use souple_mesh::{ElementKind, MAX_NODES};
 use super::criteria::{Criterion, faces, shape_factor};
 use crate::solids::geometry::{AnyElement, Geometry};
 use crate::solids::group::{Group, for_each_group};
-use crate::solids::layout::{Chunk, LANES};
+use crate::solids::layout::{Chunk, LANES, LaneBlock};
 
 /// Nodes of a hexahedron, and of all smaller elements of first order.
 const FEW_NODES: usize = 8;
+
+/// The cells of a chunk at rest.
+pub struct AtRest {
+    /// Of the chunk's own rows.
+    positions: Vec<Padded>,
+    /// `1/l₀²` by block and edge, where lengths are measured: a division takes longer than the rest of an edge.
+    per_square: Vec<LaneBlock>,
+}
+
+impl AtRest {
+    pub fn new(kind: ElementKind, chunk: &Chunk, positions: Vec<Padded>, measures_lengths: bool) -> Self {
+        let nodes = kind.node_count();
+        let of_edge = |block: usize, [a, b]: [u8; 2]| {
+            LaneBlock(std::array::from_fn(|lane| {
+                let [a, b] = [a, b].map(|node| {
+                    let local = chunk.connectivity[(block * nodes + usize::from(node)) * LANES + lane];
+                    Vec3::from(positions[usize::from(local)])
+                });
+                1.0 / (b - a).length_sq()
+            }))
+        };
+        let of_block = |block| kind.edges().iter().map(move |edge| of_edge(block, *edge));
+        let per_square =
+            if measures_lengths { (0..chunk.block_count()).flat_map(of_block).collect() } else { Vec::new() };
+        Self { positions, per_square }
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of_val(self.positions.as_slice()) + size_of_val(self.per_square.as_slice())
+    }
+}
 
 /// The cells of a chunk, at rest and as they stand.
 pub struct Measured<'a> {
@@ -18,8 +49,8 @@ pub struct Measured<'a> {
     pub chunk: &'a Chunk,
     /// `∂N_a/∂ξ`, sample after sample.
     pub reference: &'a [Vec3],
+    pub rest: &'a AtRest,
     /// Of the chunk's own rows.
-    pub rest: &'a [Padded],
     pub now: &'a [Padded],
     /// In a plane of constant z, where areas have a sign.
     pub is_plane: bool,
@@ -59,11 +90,14 @@ impl<const N: usize> WithSimd for Raise<'_, N> {
             let x = group.gather(now);
             let measured = match criterion {
                 Criterion::Volume => {
-                    let rest = group.gather(rest);
+                    let rest = group.gather(&rest.positions);
                     volume(kind, &group, [&rest, &x], reference, is_plane)
                 }
-                Criterion::Length => length(kind, &group.gather(rest), &x),
-                Criterion::Shape => shape(kind, &group.gather(rest), &x),
+                Criterion::Length => {
+                    let edges = kind.edges().len();
+                    length(kind, &group, &rest.per_square[group.block * edges..][..edges], &x)
+                }
+                Criterion::Shape => shape(kind, &group.gather(&rest.positions), &x),
                 Criterion::Force => unreachable!("its law is asked cell by cell"),
             };
             for (offset, number) in measured.as_slice().iter().enumerate() {
@@ -113,12 +147,16 @@ fn volume<S: Simd, const N: usize>(
 
 // the longest and the shortest by squares, and one root of each
 #[inline(always)]
-fn length<R: Real>(kind: ElementKind, rest: &[Vec3<R>], now: &[Vec3<R>]) -> R {
-    let like = rest[0].x;
+fn length<S: Simd, const N: usize>(
+    kind: ElementKind,
+    group: &Group<'_, S, N>,
+    per_square: &[LaneBlock],
+    now: &[Vec3<Lanes<S>>; N],
+) -> Lanes<S> {
+    let like = now[0].x;
     let (mut longest, mut shortest, mut sum) = (like.one(), like.one(), like.zero());
-    for [a, b] in kind.edges() {
-        let (a, b) = (usize::from(*a), usize::from(*b));
-        let square = (now[b] - now[a]).length_sq() / (rest[b] - rest[a]).length_sq();
+    for ([a, b], per_square) in kind.edges().iter().zip(per_square) {
+        let square = (now[usize::from(*b)] - now[usize::from(*a)]).length_sq() * group.load(per_square);
         longest = longest.max(square);
         shortest = shortest.min(square);
         sum += square;

@@ -23,7 +23,7 @@ use souple_solve::BlockMatrix;
 
 pub use criteria::Criterion;
 use criteria::Element;
-use measure::Measured;
+use measure::{AtRest, Measured};
 use parts::{Parts, Split};
 
 use super::assembly::{Assembly, Symmetry};
@@ -52,8 +52,8 @@ pub struct AdaptiveForce {
     solids: [SolidForce; 2],
     mesh: Mesh,
     adaptation: Adaptation,
-    /// Rest positions of every chunk's own rows.
-    rest: Vec<Vec<Padded>>,
+    /// How the cells of every chunk rest.
+    rest: Vec<AtRest>,
     /// Cells of the chunks before each, and of all.
     first_cell: Vec<usize>,
 }
@@ -108,7 +108,12 @@ impl AdaptiveForce {
             "cells are sorted alike under either law"
         );
         let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);
-        let rest = chunks().map(|chunk| chunk.rows.iter().map(at_rest).collect()).collect();
+        let measures_lengths = adaptation.thresholds.iter().any(|(of, _)| *of == Criterion::Length);
+        let of_chunk = |(batch, chunk): (&SolidBatch, &Chunk)| {
+            let rows = chunk.rows.iter().map(at_rest).collect();
+            AtRest::new(batch.kind, chunk, rows, measures_lengths)
+        };
+        let rest = solids[0].elements.chunks().map(of_chunk).collect();
         let mut first_cell = vec![0];
         chunks().for_each(|chunk| first_cell.push(first_cell[first_cell.len() - 1] + chunk.cells.len()));
         Ok(Self { solids, mesh, adaptation, rest, first_cell })
@@ -431,7 +436,7 @@ impl Force for AdaptiveForce {
         self.solids.iter().map(|solid| solid.bytes()).sum::<usize>()
             + size_of_val(self.mesh.points.as_slice())
             + size_of_val(self.first_cell.as_slice())
-            + self.rest.iter().map(|rest| size_of_val(rest.as_slice())).sum::<usize>()
+            + self.rest.iter().map(AtRest::bytes).sum::<usize>()
             + self.mesh.cells().map(|cell| size_of_val(cell.nodes)).sum::<usize>()
     }
 
