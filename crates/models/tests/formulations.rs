@@ -13,6 +13,7 @@ use souple_models::materials::{self, Material, WrittenLaw};
 use souple_models::solids::derived::{DERIVED, Derived};
 use souple_models::solids::{
     DifferencedForce, FORMULATIONS, FormulationError, Quadrature, Section, SolidDescription, formulated,
+    keeps_texts,
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
@@ -95,18 +96,22 @@ fn build_section(
     section: Section,
 ) -> Result<Box<dyn Force>, FormulationError> {
     let of_cell = vec![0; mesh.cell_count()];
-    let description = SolidDescription {
+    let description = SolidDescription { section, ..describe(mesh, material, &of_cell) };
+    let entry = FORMULATIONS.find(formulation).unwrap();
+    formulated(entry.build, &description, &entry.values(values).unwrap())
+}
+
+fn describe<'a>(mesh: &'a Mesh, material: &'a Material, of_cell: &'a [u16]) -> SolidDescription<'a> {
+    SolidDescription {
         name: "bar".into(),
         mesh,
         first_row: 0,
         materials: std::slice::from_ref(material),
-        material_of_cell: &of_cell,
+        material_of_cell: of_cell,
         axes: &[],
         quadrature: Quadrature::Default,
-        section,
-    };
-    let entry = FORMULATIONS.find(formulation).unwrap();
-    formulated(entry.build, &description, &entry.values(values).unwrap())
+        section: Section::Solid,
+    }
 }
 
 fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3]) -> Configuration<'a> {
@@ -564,6 +569,20 @@ fn texts_that_are_laws_are_taken() {
     let other = text("mu/2*(I1_bar - 3) + k/2*(J - 1)^2");
     let refused = build("tensor_mass", &bar("tet4"), &other).err().unwrap().to_string();
     assert!(refused.contains("cannot take the law `hyperelastic`"), "{refused}");
+}
+
+/// What is said of formulations that run a text as it is holds: they take it without its being looked at.
+#[test]
+fn formulations_that_keep_texts_take_them() {
+    let (mesh, law) = (bar("tet4"), text("1/2*mu*tr(eps)^2 + 1/2*k*dot(eps, eps)"));
+    let of_cell = vec![0; mesh.cell_count()];
+    for formulation in FORMULATIONS.entries {
+        let values = formulation.values(Values::new()).unwrap();
+        let takes_texts = (formulation.build)(&describe(&mesh, &law, &of_cell), &values).is_ok();
+        // what bodies do where nothing is said looks for laws of the table itself
+        let keeps = takes_texts && formulation.name != "shared_stiffness";
+        assert_eq!(keeps_texts(formulation), keeps, "{}", formulation.name);
+    }
 }
 
 /// What a formulation cannot do is refused, with what it takes.

@@ -13,6 +13,7 @@ use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::{Carried, FramesReport};
 use souple_models::materials::Material;
 use souple_models::multiresolution::Dress;
+use souple_models::solids::keeps_texts;
 use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
@@ -98,7 +99,8 @@ pub struct LawsInfo {
     pub of_cell: Vec<u16>,
     /// That of cells which exceed a criterion.
     pub second: Option<String>,
-    materials: Vec<Material>,
+    /// Names whose laws are texts that run as laws of the table, each with the law.
+    texts_of_table: Vec<(String, &'static str)>,
 }
 
 impl LawsInfo {
@@ -111,18 +113,22 @@ impl LawsInfo {
         let second = spec.adapt.as_ref().and_then(|adapt| adapt.material.as_ref());
         let names: Vec<String> = main.chain(parts).collect();
         let BodyMaterials { all, of_cell } = materials;
-        Self {
-            materials: all.into_iter().take(names.len()).collect(),
-            names,
-            of_cell,
-            second: second.map(|law| law.entry.name.to_owned()),
-        }
+        let keeps_texts = spec.levels.is_some()
+            || spec.frames.is_some()
+            || spec.formulation.as_ref().is_some_and(|formulation| keeps_texts(formulation.entry));
+        let known = |name: &str, material: &Material| Some((name.to_owned(), material.text_runs_as()?));
+        let of_second = second.and_then(|law| {
+            known(&format!("{} (adapt)", law.entry.name), &(law.entry.build)(&law.values).ok()?)
+        });
+        let of_cells = names.iter().zip(&all).filter_map(|(name, material)| known(name, material));
+        let texts_of_table = if keeps_texts { Vec::new() } else { of_cells.chain(of_second).collect() };
+        Self { names, of_cell, second: second.map(|law| law.entry.name.to_owned()), texts_of_table }
     }
 
-    /// The names whose laws are texts that are laws of the table, each with that which it runs as.
+    /// The names whose laws are texts that run as laws of the table, each with that law: `"hyperelastic (adapt)"` is the second of
+    /// cells that adapt.
     pub fn texts_of_table(&self) -> impl Iterator<Item = (&str, &'static str)> {
-        let both = self.names.iter().zip(&self.materials);
-        both.filter_map(|(name, material)| Some((name.as_str(), material.text_runs_as()?)))
+        self.texts_of_table.iter().map(|(name, law)| (name.as_str(), *law))
     }
 }
 
