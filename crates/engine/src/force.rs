@@ -256,6 +256,12 @@ pub trait Force: Send + Sync {
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
 
+    /// Whether [`Force::advance_memory`] reads its memory where it writes it, and none in `at`: a memory of many numbers is not
+    /// copied for it then.
+    fn advances_in_place(&self) -> bool {
+        false
+    }
+
     /// Breaks at once what bears more than it can where the rows stand, in its memory; whether anything broke. For steppers that know
     /// equilibrium alone, which seek it again then; what does not answer here breaks in [`Force::advance_memory`], when the step has ended.
     fn give_way(&self, _at: &Configuration, _memory: &mut [f64]) -> bool {
@@ -410,6 +416,10 @@ pub trait Force: Send + Sync {
     fn bytes(&self) -> usize {
         0
     }
+
+    /// Gives back what a scratch holds much of and the next evaluation makes anew with the same result, for who needs the room
+    /// between steps.
+    fn give_back(&self, _scratch: &mut Scratch) {}
 
     /// Bytes that a scratch of this force holds on the heap, for the memory report.
     fn scratch_bytes(&self, _scratch: &Scratch) -> usize {

@@ -14,6 +14,7 @@
 
 use std::ops::Range;
 use std::slice;
+use std::sync::OnceLock;
 
 use souple_math::{Mat3, Vec3, exponential, logarithm, orthonormalised};
 use souple_solve::reduce;
@@ -86,8 +87,8 @@ pub struct Kinematics {
     /// Per free row: the velocity block that moves it, and how.
     carriers: Vec<(u32, Carrier)>,
     block_count: usize,
-    /// Per free row: itself, with weight 1.
-    identity: Vec<(u32, f64)>,
+    /// Per free row: itself, with weight 1; made where it is asked for, which no method does that knows points alone.
+    identity: OnceLock<Vec<(u32, f64)>>,
     /// Per derived row: its weights over free rows; what positions follow.
     forward: Weights,
     /// Per derived row: the free rows that receive its force, and the weights.
@@ -150,6 +151,7 @@ impl Kinematics {
     pub fn add_unknowns(&mut self, kind: UnknownKind, count: usize) -> UnknownRange {
         assert!(self.forward.len() == 0, "free rows come before derived rows");
         let (first_row, first_block) = (self.carriers.len(), self.block_count);
+        self.carriers.reserve_exact(count * kind.row_count());
         for unknown in 0..count {
             let block = (first_block + unknown * kind.block_count()) as u32;
             match kind {
@@ -163,7 +165,7 @@ impl Kinematics {
                 }
             }
         }
-        self.identity.extend((first_row..self.carriers.len()).map(|row| (row as u32, 1.0)));
+        self.identity = OnceLock::new();
         self.block_count += count * kind.block_count();
         self.runs.push(Run { kind, first_row, first_block, count });
         UnknownRange { rows: first_row..self.carriers.len(), blocks: first_block..self.block_count }
@@ -235,7 +237,7 @@ impl Kinematics {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         size_of::<(u32, Carrier)>() * self.carriers.capacity()
-            + size_of::<(u32, f64)>() * self.identity.capacity()
+            + self.identity.get().map_or(0, |identity| size_of::<(u32, f64)>() * identity.capacity())
             + self.forward.bytes()
             + self.backward.bytes()
     }
@@ -251,12 +253,19 @@ impl Kinematics {
 
     /// Weights of a row over free rows, as positions follow them.
     pub fn forward(&self, row: usize) -> &[(u32, f64)] {
-        self.identity.get(row).map_or_else(|| self.forward.of(row - self.identity.len()), slice::from_ref)
+        self.itself(row).unwrap_or_else(|| self.forward.of(row - self.carriers.len()))
     }
 
     /// Free rows that receive the force on a row.
     pub fn backward(&self, row: usize) -> &[(u32, f64)] {
-        self.identity.get(row).map_or_else(|| self.backward.of(row - self.identity.len()), slice::from_ref)
+        self.itself(row).unwrap_or_else(|| self.backward.of(row - self.carriers.len()))
+    }
+
+    /// A free row as weights over free rows; `None` of a derived one.
+    fn itself(&self, row: usize) -> Option<&[(u32, f64)]> {
+        let free = self.carriers.len();
+        let made = || (0..free as u32).map(|row| (row, 1.0)).collect();
+        (row < free).then(|| slice::from_ref(&self.identity.get_or_init(made)[row]))
     }
 
     /// The velocity block that moves a free row.
@@ -486,6 +495,9 @@ impl Kinematics {
     /// Whether a row moves with a translation of the whole: 1 for points and origins, 0 for axes, and what
     /// the weights make of it for derived rows.
     pub fn translation_weight(&self, row: usize) -> f64 {
+        if row < self.carriers.len() {
+            return if self.is_axis(row as u32) { 0.0 } else { 1.0 };
+        }
         self.forward(row).iter().map(|&(free, weight)| if self.is_axis(free) { 0.0 } else { weight }).sum()
     }
 

@@ -9,7 +9,7 @@ use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
 use crate::holding::HeldPoints;
 use crate::implicit::ImplicitBuffers;
 use crate::interruption::Interruption;
-use crate::kept::{Kept, Summed};
+use crate::kept::{Kept, KeptRef, Summed, make_room};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
@@ -268,13 +268,27 @@ impl System {
         around: &Surroundings<'a>,
     ) -> Configuration<'a> {
         Configuration {
+            memory: &state.memory[self.memory_range(force)],
+            kept: state.kept.of_force(force, |force| self.forces[force].kept_len().unwrap_or(0)),
+            ..Self::view_of_pairs(force, rows, &state.pairs, around)
+        }
+    }
+
+    /// The same of a force that remembers nothing but pairs.
+    fn view_of_pairs<'a>(
+        force: usize,
+        rows: &'a Rows,
+        pairs: &'a [Pair],
+        around: &Surroundings<'a>,
+    ) -> Configuration<'a> {
+        Configuration {
             positions: &rows.positions,
             velocities: &rows.velocities,
             time: rows.time,
             load: around.load,
-            memory: &state.memory[self.memory_range(force)],
-            pairs: &state.pairs[pairs_of(&state.pairs, force)],
-            kept: state.kept.of_force(force, |force| self.forces[force].kept_len().unwrap_or(0)),
+            memory: &[],
+            pairs: &pairs[pairs_of(pairs, force)],
+            kept: KeptRef::default(),
             driven: around.driven,
             fields: around.fields,
         }
@@ -481,8 +495,8 @@ impl System {
     ) {
         // forces read the memory as it was: they are pure, and see their own part only
         let before = &mut ws.before;
-        before.memory.clone_from(&state.memory);
         before.pairs.clone_from(&state.pairs);
+        self.copy_memory(&state.memory, &mut before.memory);
         // what is kept is written anew over what was, which sums of forces have read
         if summed == Summed::Elsewhere {
             for (index, force) in
@@ -492,9 +506,16 @@ impl System {
             }
         }
         state.kept.clear();
+        let (mut own, mut copied) = (0..0, 0..0);
         for (index, force) in self.forces.iter().enumerate() {
-            let at = self.view(index, &ws.rows, before, around);
-            let memory = &mut state.memory[self.memory_range(index)];
+            let len = force.memory_len();
+            own = own.end..own.end + len;
+            copied = copied.end..copied.end + if force.advances_in_place() { 0 } else { len };
+            let at = Configuration {
+                memory: &before.memory[copied.clone()],
+                ..Self::view_of_pairs(index, &ws.rows, &before.pairs, around)
+            };
+            let memory = &mut state.memory[own.clone()];
             if force.kept_len().is_some() {
                 let Kept { counts, keys, .. } = &mut state.kept;
                 let first = keys.len();
@@ -505,6 +526,19 @@ impl System {
             }
             let pairs = pairs_of(&state.pairs, index);
             force.advance_memory(&at, timestep, memory, &mut state.pairs[pairs]);
+        }
+    }
+
+    /// The memories of the forces that do not advance theirs in place, one after the other.
+    fn copy_memory(&self, memory: &[f64], copy: &mut Vec<f64>) {
+        copy.clear();
+        let mut own = 0..0;
+        for force in &self.forces {
+            own = own.end..own.end + force.memory_len();
+            if !force.advances_in_place() {
+                make_room(copy, own.len());
+                copy.extend_from_slice(&memory[own.clone()]);
+            }
         }
     }
 

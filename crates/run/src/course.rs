@@ -15,6 +15,7 @@ use souple_table::counted;
 use crate::doubts;
 use crate::expect::Span;
 use crate::frames::Frames;
+use crate::machine::peak_bytes;
 use crate::output::{OutputError, OutputFolder};
 use crate::sound::{Rendered, Rounding};
 use crate::{
@@ -75,7 +76,7 @@ impl Course {
             Ok(status) => status,
             Err(error) => self.session.fail(&error),
         };
-        if let Err(error) = self.frames.close(self.folder.as_mut(), &self.session) {
+        if let Err(error) = self.frames.close(self.folder.as_mut(), &mut self.session) {
             status = self.session.fail(&error.into());
         }
         if let Err(error) = self.session.check_growth() {
@@ -197,6 +198,8 @@ impl Course {
             ..session.report(status)
         };
         let Some(folder) = folder else { return report };
+        // energies were asked for with lists of neighbours, and pictures are large
+        session.give_back();
         // numbers first: should the program be ended while it draws, they are there
         let written = [
             report::write_report(folder, &report),
@@ -204,10 +207,15 @@ impl Course {
             sounds.iter().flatten().try_for_each(|sound| sound.write(folder)),
             picture::write_plots(folder, traces),
             drawable.map_or(Ok(()), |moment| {
-                picture::write_last(folder, &report.title, aims.view, session, &moment)
+                picture::write_last(folder, &report.title, aims.view, session, moment)
             }),
         ];
-        let errors: Vec<OutputError> = written.into_iter().filter_map(Result::err).collect();
+        let mut errors: Vec<OutputError> = written.into_iter().filter_map(Result::err).collect();
+        if errors.is_empty() {
+            // what is drawn may have taken most
+            report.peak_bytes = peak_bytes();
+            errors.extend(report::write_report(folder, &report).err());
+        }
         if errors.is_empty() {
             return report;
         }

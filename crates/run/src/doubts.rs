@@ -32,7 +32,7 @@ pub fn of_bodies(session: &Session) -> Vec<String> {
         let drawn = body.frames.is_some().then(|| {
             let rows = session.world.rows(body.system);
             let points = rows.positions[body.rows.clone()].to_vec();
-            Mesh { points, ..body.mesh.clone() }.cell_volumes()
+            Mesh { points, ..Mesh::clone(&body.mesh) }.cell_volumes()
         });
         let is_out = |cell: &usize| {
             if let Some(drawn) = &drawn {

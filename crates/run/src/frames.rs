@@ -27,7 +27,7 @@ pub struct Frames {
     every: u64,
     last_written: Option<u64>,
     step: u64,
-    /// The last frame that can be drawn.
+    /// What a picture draws of the last frame that can be drawn.
     drawable: Option<Moment>,
 }
 
@@ -73,7 +73,7 @@ impl Frames {
     pub fn write(
         &mut self,
         folder: Option<&mut OutputFolder>,
-        session: &Session,
+        session: &mut Session,
         step: u64,
     ) -> Result<(), OutputError> {
         self.step = step;
@@ -84,7 +84,11 @@ impl Frames {
     }
 
     /// The last frame, however the run ended.
-    pub fn close(&mut self, folder: Option<&mut OutputFolder>, session: &Session) -> Result<(), OutputError> {
+    pub fn close(
+        &mut self,
+        folder: Option<&mut OutputFolder>,
+        session: &mut Session,
+    ) -> Result<(), OutputError> {
         match folder {
             Some(folder) if self.last_written != Some(self.step) => self.write_now(folder, session),
             _ => Ok(()),
@@ -93,12 +97,14 @@ impl Frames {
 
     /// The state of a session, or the last frame before it that can be drawn.
     pub fn drawable(&self, session: &Session) -> Option<Moment> {
-        let now = Moment::of_session(session, self.drawable.as_ref());
+        let now = Moment::of_session(session);
         if now.is_drawable() { Some(now) } else { self.drawable.clone() }
     }
 
-    fn write_now(&mut self, folder: &mut OutputFolder, session: &Session) -> Result<(), OutputError> {
-        let moment = Moment::of_session(session, self.drawable.as_ref());
+    fn write_now(&mut self, folder: &mut OutputFolder, session: &mut Session) -> Result<(), OutputError> {
+        // beside what is written of a million balls there is no room for the work of steps
+        session.give_back();
+        let moment = Moment::of_session(session);
         for (series, body) in self.bodies.iter_mut().zip(&moment.bodies) {
             let output = Output {
                 mesh: &body.mesh,
@@ -135,11 +141,19 @@ impl Frames {
             push(folder, series, moment.time, &as_it_stands(&mesh, &fields))?;
         }
         if moment.is_drawable() {
-            self.drawable = Some(moment);
+            self.drawable = Some(as_drawn(moment));
         }
         self.last_written = Some(self.step);
         Ok(())
     }
+}
+
+/// Without fields that no picture of the end of a run shows: of a million balls each of them is 24 MB.
+fn as_drawn(mut moment: Moment) -> Moment {
+    for body in &mut moment.bodies {
+        body.point_fields.retain(|field| ![DISPLACEMENT, VELOCITY].contains(&field.name.as_str()));
+    }
+    moment
 }
 
 /// A mesh whose own points are where it stands.
@@ -253,12 +267,16 @@ pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
     let moved = mesh.points.iter().zip(info.dress.rest()).map(|(x, rest)| *x - *rest);
     let displacements: Vec<Vec3> = moved.collect();
     let fields = vec![
-        Field::new("displacement", 3, flat(&displacements)),
+        Field::new(DISPLACEMENT, 3, flat(&displacements)),
         Field::new("level", 1, info.levels(world)),
         normal_field(&normals),
     ];
     (mesh, fields)
 }
+
+/// What points of all bodies have.
+const DISPLACEMENT: &str = "displacement";
+const VELOCITY: &str = "velocity";
 
 /// What a skin's points have and no body's do.
 pub const NORMAL: &str = "normal";
@@ -279,12 +297,10 @@ fn precision_for(positions: &[Vec3]) -> Precision {
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
     let velocities = &world.rows(body.system).velocities[body.rows.clone()];
-    let displacements: Vec<Vec3> =
-        positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
-    let mut point_fields = vec![
-        Field::new("displacement", 3, flat(&displacements)),
-        Field::new("velocity", 3, flat(velocities)),
-    ];
+    let moved = positions.iter().zip(&body.mesh.points);
+    let displacements = moved.flat_map(|(x, rest)| (*x - *rest).to_array()).collect();
+    let mut point_fields =
+        vec![Field::new(DISPLACEMENT, 3, displacements), Field::new(VELOCITY, 3, flat(velocities))];
     let influence = body
         .frames
         .as_ref()

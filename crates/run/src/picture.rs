@@ -20,11 +20,11 @@ pub fn write_last(
     title: &str,
     from: PictureView,
     session: &Session,
-    moment: &Moment,
+    moment: Moment,
 ) -> Result<(), OutputError> {
     let mut stage = Stage::of_model(session.world.model(), &session.bodies, from);
     stage.title = title.to_owned();
-    let moment = moment.clone().without_worn();
+    let moment = moment.without_worn();
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };

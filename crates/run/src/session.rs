@@ -38,6 +38,8 @@ pub struct Session {
     /// What watches its energy, where the scene asks for it.
     pub monitor: Option<Monitor>,
     leaps: Leaps,
+    /// Most that the world was seen to hold [bytes].
+    held: usize,
     /// Why it cannot go on.
     pub failure: Option<Failure>,
     pub first_step: u64,
@@ -122,6 +124,7 @@ impl Session {
             warnings,
             monitor: run.monitor.map(|spec| Monitor::new(spec, &mut world)),
             leaps: Leaps::default(),
+            held: 0,
             failure: None,
             around: AroundSteps::default(),
             clock: Instant::now(),
@@ -159,6 +162,12 @@ impl Session {
                 Stepped::Refused
             }
         }
+    }
+
+    /// Gives back what the world holds for its steps alone.
+    pub(crate) fn give_back(&mut self) {
+        self.held = self.held.max(self.world.bytes());
+        self.world.give_back();
     }
 
     /// Looks at its energy, where that is watched, and warns once where it grows.
@@ -338,7 +347,7 @@ impl Session {
             momentum: (self.momentum_at_start, self.world.momentum()),
             solver: self.solver,
             peak_bytes: peak_bytes(),
-            solver_bytes: self.world.bytes(),
+            solver_bytes: self.held.max(self.world.bytes()),
             probes: Vec::new(),
             sounds: Vec::new(),
             hashes: hashes.into_iter().map(|hashed| (hashed.period, hashed.fingerprint.hash)).collect(),

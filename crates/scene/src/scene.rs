@@ -72,8 +72,8 @@ pub struct BodyInfo {
     pub rows: Range<usize>,
     /// Its unknowns, where some of its points hang on other bodies.
     pub own: Option<OwnRows>,
-    /// At rest, placed; point `i` is row `rows.start + i`.
-    pub mesh: Mesh,
+    /// At rest, placed; point `i` is row `rows.start + i`. Shared with what is shown of it.
+    pub mesh: Arc<Mesh>,
     /// The boundary of the mesh.
     pub surface: TriangleSurface,
     /// Name of its elastic force.
@@ -352,6 +352,7 @@ impl BodyInfo {
         });
         let name = spec.name.clone();
         let own = hanging.map(|hanging| hanging.own);
+        let mesh = Arc::new(mesh);
         Self { name, system, rows, own, mesh, surface, force, laws, frames, dress: None, radii, contours }
     }
 }

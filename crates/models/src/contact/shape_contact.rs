@@ -125,7 +125,12 @@ impl ShapeContact {
 
     /// Where the shape is.
     fn pose(&self, at: &Configuration) -> Pose {
-        self.leading.pose(at.time, &at.memory[self.burdens().end..])
+        self.leading.pose(at.time, self.carrier_memory(at.memory))
+    }
+
+    /// The part of the memory that belongs to what carries the shape.
+    fn carrier_memory<'m>(&self, memory: &'m [f64]) -> &'m [f64] {
+        &memory[self.burdens().end..]
     }
 
     /// What the points do to the shape, were it there.
@@ -213,10 +218,15 @@ impl ShapeContact {
 
     /// `None` where the point is out of reach.
     fn local(&self, index: usize, pose: &Pose, at: &Configuration) -> Option<Local> {
+        let (anchor, _) = remembered(at.memory, index);
+        self.local_from(anchor, index, pose, at)
+    }
+
+    /// The same with the anchor given, in the shape's place [m].
+    fn local_from(&self, anchor: Vec3, index: usize, pose: &Pose, at: &Configuration) -> Option<Local> {
         let row = self.points[index].row as usize;
         let position = pose.to_shape(at.positions[row]);
         let nearest = self.shape.nearest_in(at, position, self.law.thickness)?;
-        let (anchor, _) = remembered(at.memory, index);
         let gap = nearest.distance - self.law.thickness;
         let is_damped = self.law.damping > 0.0 && gap < 0.0;
         let under = if is_damped { self.velocity_under(at, position) } else { Vec3::ZERO };
@@ -283,7 +293,11 @@ impl ShapeContact {
 
 /// Anchor and stretch of a point in the shape's place [m].
 fn remembered(memory: &[f64], point: usize) -> (Vec3, Vec3) {
-    let numbers = &memory[HEAT + PER_POINT * point..];
+    recalled(&memory[HEAT + PER_POINT * point..])
+}
+
+/// The same from the numbers of the point.
+fn recalled(numbers: &[f64]) -> (Vec3, Vec3) {
     (Vec3::new(numbers[0], numbers[1], numbers[2]), Vec3::new(numbers[3], numbers[4], numbers[5]))
 }
 
@@ -404,15 +418,20 @@ impl Force for ShapeContact {
         }
     }
 
+    // what points do to bearers and to what carries the shape reads the anchors of all before they move on
+    fn advances_in_place(&self) -> bool {
+        self.shape.bearers().is_empty() && matches!(self.leading, Leading::Motion(_))
+    }
+
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        let pose = self.pose(at);
+        let pose = self.leading.pose(at.time, self.carrier_memory(memory));
         let (heat, own) = memory[..self.burdens().start].split_at_mut(HEAT);
         let (own, _) = own.as_chunks_mut::<PER_POINT>();
         let advance = |index: usize, numbers: &mut [f64; PER_POINT]| {
             let point = &self.points[index];
-            let (_, before) = remembered(at.memory, index);
+            let (anchor, before) = recalled(numbers);
             let position = pose.to_shape(at.positions[point.row as usize]);
-            let local = self.local(index, &pose, at);
+            let local = self.local_from(anchor, index, &pose, at);
             let (stretch, heat) = match &local {
                 Some(local) => self.law.advance(point.share, &local.approach, before, timestep),
                 // out of reach, so is whatever was stretched
@@ -476,7 +495,7 @@ impl Force for ShapeContact {
     }
 
     fn in_hand(&self, at: &Configuration) -> Option<InHand> {
-        self.leading.in_hand(&at.memory[self.burdens().end..])
+        self.leading.in_hand(self.carrier_memory(at.memory))
     }
 
     fn obstacle(&self) -> Option<Obstacle> {

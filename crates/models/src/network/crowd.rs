@@ -598,6 +598,10 @@ impl Force for Crowd {
         )
     }
 
+    fn give_back(&self, scratch: &mut Scratch) {
+        *scratch = self.new_scratch();
+    }
+
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
         let Some(Work { grid, found, forces, flows, list, pass }) = scratch.downcast_ref() else { return 0 };
         let found: usize = found.iter().map(|list| 8 * list.capacity()).sum();

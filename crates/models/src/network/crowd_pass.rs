@@ -17,8 +17,8 @@ use super::layout::LANES;
 
 /// Balls of the first group that a thread takes at once, at least.
 const TOGETHER: usize = LISTED_TOGETHER;
-/// Slots whose forces stand side by side, at least: 24 MiB, where those of a million balls would fill 130.
-const WINDOW: usize = 1 << 20;
+/// Slots whose forces stand side by side, at least: 6 MiB, where those of a million balls would fill 130.
+const WINDOW: usize = 1 << 18;
 /// Tasks that are enough for any number of threads: each has buffers of its own.
 const TASKS: usize = 256;
 /// Balls whose pairs are looked at together: their numbers stay near the processor.
@@ -104,7 +104,9 @@ impl<'a> Known<'a> {
 impl Task {
     /// Writes what a pair remembers.
     pub fn keep(&mut self, pair: [u32; 2], numbers: &[f64]) {
+        make_room(&mut self.keys, 1);
         self.keys.push(key(pair));
+        make_room(&mut self.numbers, numbers.len());
         self.numbers.extend_from_slice(numbers);
     }
 

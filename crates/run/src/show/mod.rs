@@ -144,16 +144,14 @@ impl Moment {
         self.bodies.iter().all(BodyMoment::is_drawable)
     }
 
-    /// The present state of a session, all bodies, then all skins, then all contours; meshes of bodies are those of a moment before, where
-    /// there is one.
-    pub fn of_session(session: &Session, before: Option<&Self>) -> Self {
+    /// The present state of a session, all bodies, then all skins, then all contours.
+    pub fn of_session(session: &Session) -> Self {
         let world = &session.world;
-        let body = |(index, info): (usize, &BodyInfo)| {
+        let body = |info: &BodyInfo| {
             let (point_fields, cell_fields) = crate::frames::fields(world, info);
-            let known = before.and_then(|before| before.bodies.get(index));
             BodyMoment {
                 name: info.name.clone(),
-                mesh: known.map_or_else(|| Arc::new(info.mesh.clone()), |body| Arc::clone(&body.mesh)),
+                mesh: Arc::clone(&info.mesh),
                 positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
                 point_fields,
                 cell_fields,
@@ -192,7 +190,7 @@ impl Moment {
         };
         let names = crate::frames::names_of_contours(&session.bodies);
         let contours = names.zip(crate::frames::meshes_of_contours(&session.bodies, world)).map(contour);
-        let bodies = session.bodies.iter().enumerate().map(body);
+        let bodies = session.bodies.iter().map(body);
         let skins = session.skins.iter().map(skin);
         let dresses = session.bodies.iter().filter_map(|body| body.dress.as_ref()).map(dress);
         Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).chain(contours).collect() }

@@ -1,5 +1,7 @@
 //! Quantities of the matter of a body's points.
 
+use std::borrow::Cow;
+
 use souple_engine::{System, World};
 use souple_math::Vec3;
 
@@ -37,11 +39,15 @@ pub fn momentum(momentum: Momentum, part: &Part, world: &World) -> Vec3 {
 }
 
 /// Velocities of the part's rows, zero elsewhere.
-fn velocities_of(part: &Part, world: &World) -> Vec<Vec3> {
+fn velocities_of<'a>(part: &Part, world: &'a World) -> Cow<'a, [Vec3]> {
     let velocities = &world.rows(part.system).velocities;
+    // rows of a part are told once each: those are all
+    if part.rows.len() == velocities.len() {
+        return Cow::Borrowed(velocities);
+    }
     let mut only = vec![Vec3::ZERO; velocities.len()];
     part.rows.iter().for_each(|row| only[*row as usize] = velocities[*row as usize]);
-    only
+    Cow::Owned(only)
 }
 
 /// Masses of rows: of a consistent mass, the sums of its lines over what moves with a shift [kg].
