@@ -528,6 +528,44 @@ fn masses_at_one_place_are_told() {
     assert_eq!(with("of = [\"a\"]\n", false), "");
 }
 
+/// Masses so near to each other that rounding tells the direction between them are told as those at one place are: nearer than the
+/// last digit of their places, or than half the digits of the distance that a law wants between them. Nearer still is no fault where
+/// the law wants them that near.
+#[test]
+fn masses_lost_in_rounding_are_told() {
+    let said = |links: &str, place: &str| {
+        let text = format!(
+            "[networks.n.masses.a]\npositions = [[{place}, 0, 0], [{place}, 1, 0], [{place}, 0, 1]]\nmass = 1\n\
+             [networks.n.masses.b]\npositions = [[{place}, 0, 1e-14]]\nmass = 1\n{links}"
+        );
+        scene(&text).unwrap().warnings.join("\n")
+    };
+    let crowd = "[[networks.n.crowds]]\nlaw = { name = \"ball\", threshold = 0.5, stiffness = 1 }\n";
+    let link = |rest: &str| {
+        format!(
+            "[[networks.n.links]]\nlaw = {{ name = \"spring\", stiffness = 1 }}\nof = [\"a\", \"b\"]\nfrom = [0]\nto = [0]\n{rest}"
+        )
+    };
+    for place in ["0", "1"] {
+        for (links, named) in
+            [(crowd.to_owned(), ["0 (`a` 0)", "3 (`b` 0)"]), (link("rest_length = 0.5"), ["0", "3"])]
+        {
+            let said = said(&links, place);
+            let [a, b] = named;
+            let words = format!(
+                "masses {a} and {b} of network `n` start 1.0e-14 m from each other, which is lost in rounding"
+            );
+            assert!(said.contains(&words) && said.contains("no direction"), "{said}");
+        }
+        // they are as far apart as the link is long
+        assert!(!said(&link(""), place).contains("rounding"));
+    }
+    // 2^-46 m is the last digit of 100 m
+    assert!(said(&link(""), "100").contains("lost in rounding"));
+    let apart = crowd.replace("0.5", "1e-7");
+    assert_eq!([said(&apart, "0"), said(&apart, "100")].map(|said| said.contains("rounding")), [false, true]);
+}
+
 /// Along an axis lengths have a sign, so that a dead zone lies about 0: a mass inside drifts on, and is turned back beyond. In space
 /// they have none.
 #[test]
