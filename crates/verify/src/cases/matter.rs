@@ -42,7 +42,7 @@ const REVERSED: Case = Case {
 const SIDE: Case = Case {
     capabilities: &["JIM-34", "JIM-90"],
     scene: "plastic_kernel",
-    source: "EXP-34: sides of 2.25, 2.24 and 2.25 m become 2.24, 1.82 and 2.06 m [V], of another dermis",
+    source: "EXP-34: sides of 2.25, 2.24 and 2.25 m become 2.24, 1.82 and 2.06 m [V], of a dermis that lies otherwise",
     mutation: "parameters.side.traction=100000",
     ..OSCILLATOR
 };
@@ -384,7 +384,7 @@ pub(super) const CASES: &[Case] = &[
         what: "sum of the sides of a plastic kernel of 6.74 m after a fall of ten metres",
         scene: "plastic_kernel",
         reading: Reading::last("kernel"),
-        // 2.24 + 1.82 + 2.06 [V], of another dermis
+        // 2.24 + 1.82 + 2.06 [V], of a dermis that lies otherwise
         reference: 6.12,
         // a quarter of the strain
         tolerance: Tolerance::Absolute(0.155),
@@ -394,12 +394,12 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "kernel_keeps_its_floor",
-        what: "that side of the same, there and back, which lay level as it fell: it keeps its length",
+        what: "that side of the same, there and back, which lay nearly level as it fell: it keeps its length",
         reading: Reading::last("floor"),
         // twice 2.24 m [V]
         reference: 4.48,
         tolerance: Tolerance::Relative(0.01),
-        mutation: "parameters.side.traction=500",
+        mutation: "parameters.height=20",
         ..SIDE
     },
     Case {
@@ -415,19 +415,20 @@ pub(super) const CASES: &[Case] = &[
         id: "kernel_is_strained_left",
         what: "its side on the left, there and back",
         reading: Reading::last("left"),
-        // twice 2.06 m [V], a quarter of the strain
+        // twice 2.06 m [V]; how the two share what they bear is of how the dermis lies: again a quarter of the greater strain
         reference: 4.12,
-        tolerance: Tolerance::Absolute(0.095),
+        tolerance: Tolerance::Absolute(0.21),
         ..SIDE
     },
     Case {
         id: "kernel_is_strained_more",
         capabilities: &["JIM-34", "JIM-90"],
-        what: "the same after a fall of twenty metres: less than the specification has after ten",
+        what: "the same after a fall of twenty metres: less than whatever may be after ten",
         scene: "plastic_kernel",
         settings: &["parameters.height=20"],
         reading: Reading::last("kernel"),
-        reference: 6.12,
+        // 6.12 - 0.155 m
+        reference: 5.965,
         tolerance: Tolerance::AtMost,
         source: "EXP-34: permanent kernel strain growing with impact",
         mutation: "parameters.height=10",
