@@ -165,20 +165,24 @@ fn inverse([re, im]: Complex) -> Complex {
 /// [s]
 const LONG_STEP: f64 = 0.05;
 
-/// A random network of `elements` springs and dampers, and its effort per deformation at `exp(i ω t)` when dampers take the
-/// difference of two steps, `Z (1 - exp(-i ω h))/h`, `turn = ω h`: parallel ones add up, of those in series the inverses do.
-fn random_tree(random: &mut impl FnMut() -> f64, elements: usize, turn: f64) -> (String, Complex) {
+/// What the rate of `exp(i ω t)` is by the difference of two steps `h`, `(1 - exp(-i ω h))/h`, `turn = ω h`.
+fn by_steps(turn: f64, h: f64) -> Complex {
+    [(1.0 - turn.cos()) / h, turn.sin() / h]
+}
+
+/// A random network of `elements` springs and dampers, and its effort per deformation at `exp(i ω t)`, whose rate is given:
+/// parallel ones add up, of those in series the inverses do.
+fn random_tree(random: &mut impl FnMut() -> f64, elements: usize, rate: Complex) -> (String, Complex) {
     if elements == 1 {
         let number = 1.0 + 9.0 * random();
         return if random() < 0.5 {
             (format!("spring({number})"), [number, 0.0])
         } else {
-            let rate = number / LONG_STEP;
-            (format!("damper({number})"), [rate * (1.0 - turn.cos()), rate * turn.sin()])
+            (format!("damper({number})"), rate.map(|part| number * part))
         };
     }
     let first = 1 + (random() * (elements - 1) as f64) as usize;
-    let (a, b) = (random_tree(random, first, turn), random_tree(random, elements - first, turn));
+    let (a, b) = (random_tree(random, first, rate), random_tree(random, elements - first, rate));
     let add = |a: Complex, b: Complex| [a[0] + b[0], a[1] + b[1]];
     if random() < 0.5 {
         (format!("({} | {})", a.0, b.0), add(a.1, b.1))
@@ -195,7 +199,7 @@ fn random_trees_have_their_transfer_function() {
     // springs and dampers of 1 to 10: eight of them relax within 80 s at most, of which a course has 25
     let (turn, steps) = (0.01, 40_000);
     for round in 0..40 {
-        let (text, transfer) = random_tree(&mut random, 1 + round % 8, turn);
+        let (text, transfer) = random_tree(&mut random, 1 + round % 8, by_steps(turn, LONG_STEP));
         let (network, size) = (network(&text), transfer[0].hypot(transfer[1]));
         let mut memory = [0.0; WRITTEN_MEMORY];
         for step in 0..steps {
@@ -208,6 +212,49 @@ fn random_trees_have_their_transfer_function() {
             }
         }
     }
+}
+
+/// What a step makes wrong of any network of springs and dampers is in proportion to it (EXP-45): half a step, half the error
+/// against the network in continuous time, whose dampers know the rate `i ω`.
+#[test]
+fn errors_of_random_trees_are_in_proportion_to_steps() {
+    let (turn, steps) = (0.01, 40_000);
+    let with = |round: usize, rate: Complex| {
+        let mut random = random_numbers();
+        // another network each round
+        for _ in 0..round {
+            random();
+        }
+        random_tree(&mut random, 2 + round % 7, rate)
+    };
+    let mut of_order_one = 0;
+    for round in 0..20 {
+        let (text, exact) = with(round, [0.0, turn / LONG_STEP]);
+        if !text.contains("damper") || !text.contains("spring") {
+            continue;
+        }
+        let network = network(&text);
+        // the greatest error of the last period, at the dates that both have
+        let error = |halves: i32| {
+            let h = LONG_STEP / f64::from(halves);
+            let mut memory = [0.0; WRITTEN_MEMORY];
+            let mut greatest = 0.0_f64;
+            for step in 0..halves * steps {
+                let phase = turn / f64::from(halves) * f64::from(step);
+                let effort = network.deform(phase.sin(), h, &mut memory).effort;
+                if step % halves == 0 && step > halves * (steps - 700) {
+                    greatest = greatest.max((effort - exact[0] * phase.sin() - exact[1] * phase.cos()).abs());
+                }
+            }
+            greatest
+        };
+        let ratio = error(1) / error(2);
+        // the rate is `i ω (1 - i ω h/2)`: each of the elements adds no more than that to the next term
+        let next = 8.0 * turn / 2.0;
+        assert!((ratio - 2.0).abs() < 2.0 * next, "{text}: {ratio}");
+        of_order_one += 1;
+    }
+    assert!(of_order_one > 10, "{of_order_one} networks of both kinds");
 }
 
 #[test]
