@@ -50,7 +50,7 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
 
 /// Benches whose baselines are promises: about laws and elements, networks, levels and tools, what is shown 25 times a second, and which of two ways
 /// is the cheaper.
-const SPEED: [&str; 20] = [
+const SPEED: [&str; 24] = [
     "law_text_tensor",
     "law_text_table",
     "law_text_reworded",
@@ -67,7 +67,11 @@ const SPEED: [&str; 20] = [
     "adaptive",
     "contours_500",
     "view_network",
+    "springs_lattice_100k",
+    "springs_lattice_1m",
     "string_audio",
+    "balls_100k",
+    "balls_1m_peak",
     "adaptive_saving",
     "octree_rod",
     "tool_detection_10k",

@@ -165,12 +165,12 @@ pub const BENCHES: &[Bench] = &[
     Bench { name: "startup", what: "`souple list materials` from start to end [ms]", run: startup::startup },
     Bench {
         name: "springs_lattice_100k",
-        what: "complete steps of a cubic lattice of 33 masses along each edge (104,544 damped springs) in motion [links/s]",
+        what: "complete steps of a cubic lattice of 33 masses along each edge (104,544 damped springs) in motion [links/s, GB/s, of a triad's GB/s]",
         run: |effort| links::springs_lattice("springs_lattice_100k", 33, 150e6, effort),
     },
     Bench {
         name: "springs_lattice_1m",
-        what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
+        what: "the same with 70 masses along each edge (1,014,300 damped springs)",
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, 120e6, effort),
     },
     Bench {
@@ -185,8 +185,13 @@ pub const BENCHES: &[Bench] = &[
     },
     Bench {
         name: "balls_scaling",
-        what: "the same with 1,000 to 1,000,000 balls [ns/ball and step], memory, and the exponent fitted (BEN-6)",
+        what: "the same with 1,000 to 1,000,000 balls, one thread and all [steps/s, pairs/s, ns/ball and step], memory, and the exponent fitted (BEN-6)",
         run: |effort| balls::scaling("balls_scaling", effort),
+    },
+    Bench {
+        name: "balls_1m_peak",
+        what: "most memory that the program holds for a run of a million such balls, with frames and picture [MB]",
+        run: |effort| balls::peak("balls_1m_peak", effort),
     },
     Bench {
         name: "contours_500",

@@ -1,9 +1,18 @@
 //! Multitudes: steps of a heap with cohesion and friction, and how they grow with the number of balls.
 
-use souple_scene::Measurement;
+use std::path::Path;
+use std::process::Command;
 
-use super::timing::{Clock, Held, Timed, Timing, as_it_is, median, scene};
+use serde_json::Value;
+use souple_engine::World;
+use souple_scene::{Measurement, Scene};
+
+use super::timing::{Clock, Held, Timed, Timing, as_it_is, scene, thread_counts, with_threads};
 use super::{Effort, Figure, value_of};
+use crate::scenes;
+
+/// The scene of a heap with cohesion and friction.
+const HEAP: &str = "cohesive_heap";
 
 /// Steps in a period of the world.
 const STEPS_PER_PERIOD: usize = 10;
@@ -32,50 +41,148 @@ fn held(baseline: Option<f64>) -> Result<Held, String> {
     Ok(Held { error: (rebound / REBOUND - 1.0).abs(), error_of, baseline })
 }
 
-fn timing(settings: &[String], samples: usize) -> Timing<'_> {
-    Timing { scene: "cohesive_heap", settings, prepare: as_it_is, warm_up: 1, samples, steps_per_sample: 1 }
-}
-
 pub fn balls_100k(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let (settings, on_two, on_others) = (heap(5.2), held(Some(WANTED))?, held(None)?);
-    let timed = timing(&settings, effort.choose(3, 10)).run()?;
-    let held = |timed: &Timed| if timed.threads == CORES { &on_two } else { &on_others };
-    Ok(timed
-        .into_iter()
-        .map(|timed| {
-            let held = held(&timed);
-            timed.in_parts(STEPS_PER_PERIOD).steps_per_second(name, held)
-        })
-        .collect())
+    let timing = Timing {
+        scene: HEAP,
+        settings: &settings,
+        prepare: as_it_is,
+        warm_up: 1,
+        samples: effort.choose(3, 10),
+        steps_per_sample: 1,
+    };
+    let mut counts = thread_counts();
+    if counts.iter().any(|count| *count > CORES) {
+        counts.insert(1, CORES);
+    }
+    let of = |threads: usize| {
+        let timed = with_threads(threads, || timing.sample(threads))??;
+        let held = if threads == CORES { &on_two } else { &on_others };
+        Ok(timed.in_parts(STEPS_PER_PERIOD).steps_per_second(name, held))
+    };
+    counts.into_iter().map(of).collect()
 }
 
-/// A thousand balls to a million, with all threads.
+/// Numbers of balls, about, with the radius of the cone that holds them [m].
+const RADII: [(&str, f64); 4] = [("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", MILLION)];
+
+/// Of the cone that holds a million balls [m].
+const MILLION: f64 = 11.3;
+
+/// A thousand balls to a million, with one thread and with all: steps and pairs in a second, and how their time grows.
 pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
-    let radii: &[(&str, f64)] = &[("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", 11.3)];
-    let [held, memory, exponent] = [held(None)?, held(Some(BYTES_OF_BALL))?, held(Some(EXPONENT))?];
+    let [told, memory, exponent] = [held(None)?, held(Some(BYTES_OF_BALL))?, held(Some(EXPONENT))?];
     let mut figures = Vec::new();
-    let mut points = Vec::new();
-    for (count, radius) in &radii[..effort.choose(3, 4)] {
-        let settings = heap(*radius);
-        let balls = scene("cohesive_heap", &settings)?.bodies[0].mesh.points.len() as f64;
-        let timed: Timed = timing(&settings, effort.choose(3, 5)).sample(rayon::current_num_threads())?;
-        let timed = timed.in_parts(STEPS_PER_PERIOD);
-        let of_ball: Vec<f64> = timed.seconds.iter().map(|seconds| 1e9 * seconds / balls).collect();
-        points.push([balls.ln(), (balls * median(of_ball.clone()).0).ln()]);
-        let figure = timed.figure(&format!("{name}_{count}"), of_ball, &held, ("ns/ball and step", false));
-        let own = timed.bytes as f64 / balls;
-        figures.push(figure);
-        figures.push(timed.figure(&format!("{name}_{count}_memory"), vec![own], &memory, ("B/ball", false)));
-        if let ("1m", slope) = (*count, slope(&points)) {
-            figures.push(timed.figure(
-                &format!("{name}_exponent"),
-                vec![slope],
-                &exponent,
-                ("of balls", false),
-            ));
+    // of each number of threads the logarithms of balls and of the time of a step
+    let mut points: Vec<(Timed, Vec<[f64; 2]>)> = Vec::new();
+    for (count, radius) in RADII {
+        let Scene { model, state, probes, bodies, .. } = scene(HEAP, &heap(radius))?;
+        let balls = bodies[0].mesh.points.len() as f64;
+        let probe = probes.iter().find(|probe| probe.name == "pairs").ok_or("there is no probe `pairs`")?;
+        let mut world = model.start(state);
+        world.step().map_err(|error| error.to_string())?;
+        let Measurement::Number(pairs) = probe.measure(&mut world) else {
+            return Err("pairs are no number".to_owned());
+        };
+        for (run, threads) in thread_counts().into_iter().enumerate() {
+            let timed = with_threads(threads, || steps(&mut world, threads, effort.choose(2, 5)))??;
+            let timed = timed.in_parts(STEPS_PER_PERIOD);
+            let name = format!("{name}_{count}");
+            let of_pairs = |seconds: f64| pairs / seconds;
+            let of_ball = |seconds: f64| 1e9 * seconds / balls;
+            figures.push(timed.steps_per_second(&name, &told));
+            figures.push(timed.of_seconds(&format!("{name}_pairs"), of_pairs, &told, ("pairs/s", true)));
+            let in_step = ("ns/ball and step", false);
+            figures.push(timed.of_seconds(&format!("{name}_ball"), of_ball, &told, in_step));
+            let point = [balls.ln(), timed.seconds_of_step().ln()];
+            match points.get_mut(run) {
+                Some((last, of_run)) => {
+                    of_run.push(point);
+                    *last = timed;
+                }
+                None => points.push((timed, vec![point])),
+            }
+        }
+        if let Some((timed, _)) = points.last() {
+            let own = vec![timed.bytes as f64 / balls];
+            figures.push(timed.figure(&format!("{name}_{count}_memory"), own, &memory, ("B/ball", false)));
         }
     }
+    // few balls have fewer neighbours each, and keep many threads waiting: what all do is held
+    let all = points.len() - 1;
+    for (run, (timed, of_run)) in points.iter().enumerate() {
+        let (grows, held) = (vec![slope(of_run)], if run == all { &exponent } else { &told });
+        figures.push(timed.figure(&format!("{name}_exponent"), grows, held, ("of balls", false)));
+    }
     Ok(figures)
+}
+
+/// Periods of a world that others may have stepped before.
+fn steps(world: &mut World, threads: usize, samples: usize) -> Result<Timed, String> {
+    let (mut seconds, mut processor) = (Vec::new(), Vec::new());
+    for _ in 0..samples {
+        let clock = Clock::start();
+        world.step().map_err(|error| error.to_string())?;
+        clock.stop(&mut seconds, &mut processor, 1);
+    }
+    // several threads work for one clock
+    let processor = if threads == 1 { processor } else { Vec::new() };
+    Ok(Timed { threads, seconds, processor, cells: 0, bytes: world.bytes() })
+}
+
+/// Most memory that the program may hold for a run of a million balls, with its frames and its picture [MB].
+const PEAK: f64 = 1000.0;
+
+/// What `souple run` holds at its peak, as it tells itself: a process of its own, so that nothing else is in it.
+pub fn peak(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let fault = |error: std::io::Error| error.to_string();
+    let folder = std::env::temp_dir().join(format!("souple_{name}_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(fault)?;
+    let told = report_of_million(&folder, effort.choose(2, 30));
+    std::fs::remove_dir_all(&folder).map_err(fault)?;
+    let report = told?;
+    let bytes = |key: &str| report[key].as_f64().ok_or("this system does not tell what a process holds");
+    let figure = |name: String, bytes: f64, baseline: Option<f64>| Figure {
+        name,
+        value: 1e-6 * bytes,
+        by_processor: None,
+        unit: "MB",
+        higher_is_better: false,
+        error: 0.0,
+        error_of: String::new(),
+        baseline,
+        threads: rayon::current_num_threads(),
+        samples: 1,
+        spread: 0.0,
+        bytes: bytes as usize,
+    };
+    Ok(vec![
+        figure(name.to_owned(), bytes("peak_bytes")?, Some(PEAK)),
+        // of that the state, forces, and the work of steps
+        figure(format!("{name}_world"), bytes("solver_bytes")?, None),
+    ])
+}
+
+/// The report of a run of so many periods, with frames, tables and picture in a folder.
+fn report_of_million(folder: &Path, periods: usize) -> Result<Value, String> {
+    let fault = |error: std::io::Error| error.to_string();
+    let text = scenes::text(HEAP).ok_or_else(|| format!("there is no scene `{HEAP}`"))?;
+    let scene = folder.join("scene.toml");
+    std::fs::write(&scene, text).map_err(fault)?;
+    let program = std::env::current_exe().map_err(fault)?;
+    let mut command = Command::new(&program);
+    command.arg("run").arg(&scene).arg("--out").arg(folder.join("out"));
+    heap(MILLION).iter().for_each(|setting| {
+        command.args(["--set", setting]);
+    });
+    command.args(["--steps", &periods.to_string(), "--frames", "2", "--quiet", "--json"]);
+    command.args(["--threads", &rayon::current_num_threads().to_string()]);
+    let output = command.output().map_err(fault)?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        return Err(format!("`{} run` of a million balls failed: {said}", program.display()));
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| error.to_string())
 }
 
 /// How long contours of five hundred balls may take to be shown 25 times in a second [ms].

@@ -1,10 +1,7 @@
 //! Networks: links that a core updates in a second, what of the memory's bandwidth that takes, and how fast a string
 //! sounds.
 
-use std::hint::black_box;
-use std::time::Instant;
-
-use super::timing::{Held, Timing, as_it_is, scene};
+use super::timing::{Held, Timing, Triad, as_it_is, scene};
 use super::{Effort, Figure, value_of};
 
 /// Steps in a period of the world: what is done once a period is shared by them.
@@ -37,10 +34,12 @@ pub fn springs_lattice(name: &str, n: usize, wanted: f64, effort: Effort) -> Res
     // momentum is kept to rounding, whatever the links do
     let small = lattice(11);
     let momentum = |steps| value_of(scene("network_lattice", &small)?, steps, "momentum", 0);
-    let held = Held {
-        error: (momentum(100)? / momentum(1)? - 1.0).abs(),
+    let error = (momentum(100)? / momentum(1)? - 1.0).abs();
+    // of a core; what several share is told
+    let held = |threads: usize| Held {
+        error,
         error_of: "momentum after 1000 steps of 11 masses along each edge".to_owned(),
-        baseline: Some(wanted),
+        baseline: (threads == 1).then_some(wanted),
     };
     let timing = Timing {
         scene: "network_lattice",
@@ -54,10 +53,11 @@ pub fn springs_lattice(name: &str, n: usize, wanted: f64, effort: Effort) -> Res
     for timed in timing.run()? {
         let own = timed.in_parts(STEPS_PER_PERIOD);
         let moved = own.cells * BYTES_OF_LINK + n.pow(3) * BYTES_OF_MASS;
-        let triad = super::timing::with_threads(own.threads, triad_gigabytes_per_second)?;
-        let bandwidth = Held { error: 0.0, error_of: String::new(), baseline: Some(triad) };
-        figures.push(own.links_per_second(name, &held));
-        figures.push(own.gigabytes_per_second(&format!("{name}_bandwidth"), moved, &bandwidth));
+        let triad = super::timing::with_threads(own.threads, Triad::measured)?;
+        let told = Held { error: 0.0, error_of: String::new(), baseline: None };
+        figures.push(own.links_per_second(name, &held(own.threads)));
+        figures.push(own.gigabytes_per_second(&format!("{name}_bandwidth"), moved, &told));
+        figures.push(own.share_of_triad(&format!("{name}_share"), moved, &triad, &told));
     }
     Ok(figures)
 }
@@ -99,26 +99,4 @@ pub fn string_audio(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let timed = super::timing::with_threads(1, || timing.sample(1))??;
     let step = timed.microseconds_per_step(&format!("{name}_step"), &held(1e6 * period / REAL_TIMES));
     Ok(vec![timed.times_real_time(name, period, &held(REAL_TIMES)), step])
-}
-
-/// `a = b + s c` over arrays far larger than the caches [GB/s].
-fn triad_gigabytes_per_second() -> f64 {
-    use rayon::prelude::*;
-    const LENGTH: usize = 8 << 20;
-    let (b, c) = (vec![1.0_f64; LENGTH], vec![2.0_f64; LENGTH]);
-    let mut a = vec![0.0_f64; LENGTH];
-    let chunk = LENGTH.div_ceil(rayon::current_num_threads());
-    let mut best = f64::INFINITY;
-    for _ in 0..5 {
-        let clock = Instant::now();
-        a.par_chunks_mut(chunk).zip(b.par_chunks(chunk)).zip(c.par_chunks(chunk)).for_each(|((a, b), c)| {
-            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-                *a = *b + 3.0 * *c;
-            }
-        });
-        best = best.min(clock.elapsed().as_secs_f64());
-        black_box(&mut a);
-    }
-    // read, read, write, and what is written is fetched first
-    4.0 * 8.0 * LENGTH as f64 / best * 1e-9
 }

@@ -1,5 +1,6 @@
 //! The one way in which steps are timed.
 
+use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
@@ -112,6 +113,44 @@ pub fn bend(world: &mut World) -> Result<(), SnapshotError> {
     world.resume(state)
 }
 
+/// What `a = b + s c` over arrays far larger than the caches moves [GB/s].
+pub struct Triad {
+    by_clock: f64,
+    /// By the time that this thread has a processor, where the system tells.
+    by_processor: Option<f64>,
+}
+
+impl Triad {
+    /// The fastest of several, with the threads at hand.
+    pub fn measured() -> Self {
+        use rayon::prelude::*;
+        const LENGTH: usize = 8 << 20;
+        // read, read, write, and what is written is fetched first
+        const MOVED: f64 = 4.0 * 8.0 * LENGTH as f64;
+        let (b, c) = (vec![1.0_f64; LENGTH], vec![2.0_f64; LENGTH]);
+        let mut a = vec![0.0_f64; LENGTH];
+        let chunk = LENGTH.div_ceil(rayon::current_num_threads());
+        let (mut seconds, mut processor) = (Vec::new(), Vec::new());
+        for _ in 0..5 {
+            let clock = Clock::start();
+            a.par_chunks_mut(chunk).zip(b.par_chunks(chunk)).zip(c.par_chunks(chunk)).for_each(
+                |((a, b), c)| {
+                    for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                        *a = *b + 3.0 * *c;
+                    }
+                },
+            );
+            clock.stop(&mut seconds, &mut processor, 1);
+            black_box(&mut a);
+        }
+        let fastest = |samples: &[f64]| {
+            let least = samples.iter().copied().reduce(f64::min)?;
+            Some(1e-9 * MOVED / least)
+        };
+        Self { by_clock: fastest(&seconds).unwrap_or(f64::NAN), by_processor: fastest(&processor) }
+    }
+}
+
 /// How wrong a result is, and what another needs for it.
 pub struct Held {
     pub error: f64,
@@ -134,6 +173,17 @@ impl Timed {
         self.of_seconds(name, |seconds| 1e-9 * bytes as f64 / seconds, held, ("GB/s", true))
     }
 
+    /// The same as a part of what a triad moves.
+    pub fn share_of_triad(&self, name: &str, bytes: usize, triad: &Triad, held: &Held) -> Figure {
+        let moved = |seconds: f64| 1e-9 * bytes as f64 / seconds;
+        let shares = self.seconds.iter().map(|seconds| moved(*seconds) / triad.by_clock).collect();
+        let by_processor = mean(&self.processor).zip(triad.by_processor);
+        Figure {
+            by_processor: by_processor.map(|(seconds, whole)| moved(seconds) / whole),
+            ..self.figure(name, shares, held, ("of a triad's GB/s", true))
+        }
+    }
+
     /// Of steps that simulate so much each [s].
     pub fn times_real_time(&self, name: &str, timestep: f64, held: &Held) -> Figure {
         self.of_seconds(name, |seconds| timestep / seconds, held, ("x real time", true))
@@ -151,7 +201,13 @@ impl Timed {
         self.of_seconds(name, |seconds| 1.0 / seconds, held, ("steps/s", true))
     }
 
-    fn of_seconds(
+    /// Of a step by the time of the processor, where one thread has worked and the system tells, or as it passed [s].
+    pub fn seconds_of_step(&self) -> f64 {
+        mean(&self.processor).unwrap_or_else(|| median(self.seconds.clone()).0)
+    }
+
+    /// A number of the seconds of a step.
+    pub fn of_seconds(
         &self,
         name: &str,
         value: impl Fn(f64) -> f64,
