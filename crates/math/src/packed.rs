@@ -188,26 +188,13 @@ impl<S: Simd> Lanes<S> {
         let (to, from) = (&to[..S::F64_LANES], &from[..S::F64_LANES]);
         #[cfg(target_arch = "x86_64")]
         if let Some(v3) = four_or_eight_wide(&simd) {
-            // two lanes: (a.0 a.1 b.0 b.1)
-            let two = |lane: usize| {
-                let of = |values: &[[f64; 2]]| bytemuck::cast([values[lane], values[lane + 1]]);
-                v3.avx._mm256_sub_pd(of(to), of(from))
-            };
-            let four = |first: usize| -> [[f64; 4]; 2] {
-                let (ab, cd) = (two(first), two(first + 2));
-                let ac = v3.avx._mm256_permute2f128_pd::<0x20>(ab, cd);
-                let bd = v3.avx._mm256_permute2f128_pd::<0x31>(ab, cd);
-                [
-                    bytemuck::cast(v3.avx._mm256_unpacklo_pd(ac, bd)),
-                    bytemuck::cast(v3.avx._mm256_unpackhi_pd(ac, bd)),
-                ]
-            };
+            let [a, b] = four_differences(v3, to, from);
             if S::F64_LANES == 4 {
-                return four(0).map(|numbers| Self::load(simd, &numbers));
+                return [Self::load(simd, &a), Self::load(simd, &b)];
             }
-            let ([a, c], [b, d]) = (four(0), four(4));
-            let eight = |low: [f64; 4], high: [f64; 4]| -> [f64; 8] { bytemuck::cast([low, high]) };
-            return [Self::load(simd, &eight(a, b)), Self::load(simd, &eight(c, d))];
+            let [c, d] = four_differences(v3, &to[4..], &from[4..]);
+            let (first, second): ([f64; 8], [f64; 8]) = (bytemuck::cast([a, c]), bytemuck::cast([b, d]));
+            return [Self::load(simd, &first), Self::load(simd, &second)];
         }
         let mut out = [Self::constant(simd, 0.0); 2];
         for lane in 0..S::F64_LANES {
@@ -233,6 +220,19 @@ impl<S: Simd> Lanes<S> {
             }
         }
     }
+}
+
+/// The first four differences side by side: first numbers, then second ones. A function, since a closure may be left standing by
+/// itself: what is not inlined is not compiled for the processor's instructions.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn four_differences(v3: &pulp::x86::V3, to: &[[f64; 2]], from: &[[f64; 2]]) -> [[f64; 4]; 2] {
+    // two lanes: (a.0 a.1 b.0 b.1)
+    let ab = v3.avx._mm256_sub_pd(bytemuck::cast([to[0], to[1]]), bytemuck::cast([from[0], from[1]]));
+    let cd = v3.avx._mm256_sub_pd(bytemuck::cast([to[2], to[3]]), bytemuck::cast([from[2], from[3]]));
+    let ac = v3.avx._mm256_permute2f128_pd::<0x20>(ab, cd);
+    let bd = v3.avx._mm256_permute2f128_pd::<0x31>(ab, cd);
+    [bytemuck::cast(v3.avx._mm256_unpacklo_pd(ac, bd)), bytemuck::cast(v3.avx._mm256_unpackhi_pd(ac, bd))]
 }
 
 #[cfg(test)]
