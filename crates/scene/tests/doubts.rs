@@ -400,3 +400,58 @@ fn faults_are_told_once() {
         assert_eq!(errors.0.len(), 1, "{errors}");
     }
 }
+
+const PRESSED: &str = r#"format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "symplectic_euler"
+steps_per_period = 20
+[bodies.slab]
+mesh = { generate = "box", size = [0.1, 0.1, 0.04], cells = [4, 4, 2], element = "tet4" }
+material = { name = "stable_neo_hookean", youngs_modulus = "2 kPa", poissons_ratio = 0.35, density = 1000 }
+[[bodies.slab.pins]]
+region = "z_min"
+[hands.right]
+device = "emulated"
+tool = { name = "sphere", centre = [0.03, 0.05, 0.07], radius = 0.02 }
+body = "slab"
+region = "z_max"
+touch = { detect = "triangles", response = "imposed" }
+"#;
+
+const LEFT: &str = r#"[hands.left]
+device = "emulated"
+tool = { name = "sphere", centre = [0.08, 0.05, 0.07], radius = 0.02 }
+body = "slab"
+region = { box = [[0.06, -1, 0.039], [1, 1, 1]] }
+touch = { detect = "triangles", response = "imposed" }
+"#;
+
+/// DEB-45: a tool that imposes displacements is told where pins hold what it may touch, and where another such tool may hold the same points; with
+/// regions of their own, or where one of them pushes, there is nothing to tell.
+#[test]
+fn who_holds_points_already_is_told() {
+    let told = |text: &str| -> Vec<String> {
+        warnings(text).into_iter().filter(|warning| warning.contains("may")).collect()
+    };
+    assert_eq!(told(PRESSED), Vec::<String>::new());
+    // 25 points of the lower face
+    let whole = told(&PRESSED.replace("region = \"z_max\"\n", ""));
+    assert!(whole.len() == 1 && whole[0].contains("pins hold 25 points of body `slab`"), "{whole:?}");
+    assert!(whole[0].contains("`hands.right`") && whole[0].contains("scene.toml:"), "{whole:?}");
+    let slides = PRESSED.replace("region = \"z_min\"", "region = \"x_min\"\naxes = \"x\"");
+    // 5 by 3 points there, of which 5 are of the upper face
+    let partly = told(&slides);
+    assert!(partly.len() == 1 && partly[0].contains("hold 5 points"), "{partly:?}");
+    assert!(partly[0].contains("5 of them along some axes only"), "{partly:?}");
+    let two = format!("{PRESSED}{LEFT}");
+    // 2 by 5 points of the upper face
+    let both = told(&two);
+    assert!(both.len() == 1 && both[0].contains("it may hold 10 points of body `slab`"), "{both:?}");
+    assert!(both[0].contains("`hands.right`") && both[0].contains("`hands.left`"), "{both:?}");
+    let apart = "region = { box = [[-1, -1, 0.039], [0.055, 1, 1]] }";
+    assert_eq!(told(&two.replace("region = \"z_max\"", apart)), Vec::<String>::new());
+    let pushes = LEFT.replace(", response = \"imposed\"", "");
+    assert_eq!(told(&format!("{PRESSED}{pushes}")), Vec::<String>::new());
+}

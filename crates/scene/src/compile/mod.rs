@@ -11,6 +11,7 @@ mod frames;
 mod freedom;
 mod hands;
 mod hanging;
+mod imposing;
 mod inertial;
 mod levels;
 mod links;
@@ -148,6 +149,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
+    imposing::warn(&mut draft);
         return None;
     }
     for (system, spec) in draft.systems.iter().zip(&spec.systems) {
