@@ -21,6 +21,11 @@ pub trait Motion: Send + Sync + Debug {
     fn spin(&self, _time: f64) -> Vec3 {
         Vec3::ZERO
     }
+
+    /// Whether it is known to be the same at all times.
+    fn rests(&self) -> bool {
+        false
+    }
 }
 
 /// A velocity block that does not move freely.

@@ -211,6 +211,14 @@ pub trait Force: Send + Sync {
     /// The groups of rows it couples: each is a clique of the matrix pattern.
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32]));
 
+    /// Calls `visit` for the rows that it may push as long as no row is farther than `slack` [m] from where it is at `at`; by default
+    /// all of its cliques. Steppers that ask forces many times in a step leave the others behind meanwhile, and do not ask a force
+    /// that visits none: neither of the rows left out nor of a memory that was moved on without them may anything be seen in what it
+    /// gives before it reaches them.
+    fn visit_reach(&self, at: &Configuration, _slack: f64, visit: &mut dyn FnMut(u32)) {
+        self.visit_cliques(at.pairs, &mut |rows| rows.iter().for_each(|row| visit(*row)));
+    }
+
     /// Whether all rows that it reads are unknowns or in its cliques, for what carries no unknown of its own and is only
     /// looked at need not be placed then where a step tries things out.
     fn reads_cliques_alone(&self) -> bool {

@@ -159,6 +159,11 @@ pub trait Levels: Send + Sync {
         velocities: &mut [Vec3],
     );
 
+    /// How far a follower comes at most while no point that it follows comes farther than one; infinite where that is not known.
+    fn leverage(&self, _scratch: &Scratch) -> f64 {
+        f64::INFINITY
+    }
+
     /// Brings followers to where those are that they follow.
     fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]);
 

@@ -493,6 +493,19 @@ impl System {
         timestep: f64,
         summed: Summed,
     ) {
+        self.advance_memory_of(&|_| true, ws, state, around, timestep, summed);
+    }
+
+    /// The same of some forces, by their numbers; memories of the others stay.
+    pub fn advance_memory_of(
+        &self,
+        moves_on: &dyn Fn(usize) -> bool,
+        ws: &mut SystemWorkspace,
+        state: &mut SystemState,
+        around: &Surroundings,
+        timestep: f64,
+        summed: Summed,
+    ) {
         // forces read the memory as it was: they are pure, and see their own part only
         let before = &mut ws.before;
         before.pairs.clone_from(&state.pairs);
@@ -522,6 +535,9 @@ impl System {
                 counts.resize(index + 1, 0);
                 force.advance_kept(&at, &mut ws.scratches[index], memory, &mut state.kept);
                 state.kept.counts[index] = (state.kept.keys.len() - first) as u64;
+                continue;
+            }
+            if !moves_on(index) {
                 continue;
             }
             let pairs = pairs_of(&state.pairs, index);

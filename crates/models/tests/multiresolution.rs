@@ -1,9 +1,13 @@
 //! Bodies of several meshes: what follows follows exactly, nothing is lost between levels, and steps keep their laws.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels};
 use souple_engine::steppers::{Schedule, Staggered};
 use souple_engine::{
-    Constraint, Force, Kinematics, Mass, Model, Rows, Scratch, State, System, UnknownKind, World,
+    Configuration, Constraint, Declaration, Energy, Force, Kinematics, Mass, Model, Pair, Rows, Scratch,
+    State, System, TangentWeights, UnknownKind, World,
 };
 use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
@@ -11,10 +15,14 @@ use souple_mesh::coarsen::coarser;
 use souple_mesh::fill::{Options, PARAMETERS};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::{Mesh, generate};
+use souple_models::contact::shape::{Plane, Sphere};
+use souple_models::contact::{ContactLaw, ContactPoint, Shape, ShapeContact};
+use souple_models::loads::RigidMotion;
 use souple_models::materials::{Material, TABLE};
 use souple_models::multiresolution::{
     Choice, Coupling, Criterion, LevelsDescription, LevelsForce, Loops, Measure, PLACE_VARIABLES, Stiffness,
 };
+use souple_solve::BlockMatrix;
 use souple_table::{Value, Values};
 
 fn material(name: &str, lame: [f64; 2]) -> Material {
@@ -230,6 +238,17 @@ fn forces_are_slopes_of_the_energy() {
 }
 
 fn world(force: LevelsForce, stepper: Staggered, period: f64, pins: impl Fn(Vec3) -> bool) -> World {
+    world_with(force, Vec::new(), stepper, period, pins)
+}
+
+/// The same with forces from outside.
+fn world_with(
+    force: LevelsForce,
+    outside: Vec<Box<dyn Force>>,
+    stepper: Staggered,
+    period: f64,
+    pins: impl Fn(Vec3) -> bool,
+) -> World {
     let mut kinematics = Kinematics::default();
     let rest = force.hierarchy().rest.clone();
     kinematics.add_unknowns(UnknownKind::Point, rest.len());
@@ -241,7 +260,7 @@ fn world(force: LevelsForce, stepper: Staggered, period: f64, pins: impl Fn(Vec3
         name: "main".to_owned(),
         kinematics,
         mass,
-        forces: vec![Box::new(force)],
+        forces: std::iter::once(Box::new(force) as _).chain(outside).collect(),
         constraints,
         stepper: Box::new(stepper),
         steps_per_period: 1,
@@ -444,4 +463,130 @@ fn coarse_meshes_yield_as_the_finest() {
     let a = |share: f64, h_sq: f64| (1.0 - share) / (share * h_sq - 1.0);
     // two cells across are far from the limit, which is approached from below
     assert!((0.5..1.0).contains(&(a(coarse, 16.0) / a(middle, 4.0))), "{coarse} {middle}");
+}
+
+/// A contact that tells what it reaches, or says that it reaches everything; it counts how often it is asked.
+struct Told {
+    contact: ShapeContact,
+    reaches_all: bool,
+    asked: Arc<AtomicUsize>,
+}
+
+impl Force for Told {
+    fn name(&self) -> &str {
+        self.contact.name()
+    }
+
+    fn declaration(&self) -> Declaration {
+        self.contact.declaration()
+    }
+
+    fn memory_len(&self) -> usize {
+        self.contact.memory_len()
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        self.contact.initial_memory(memory);
+    }
+
+    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
+        self.contact.energy(at, scratch)
+    }
+
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        self.contact.add_force(at, scratch, out);
+    }
+
+    fn add_differential(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        scratch: &mut Scratch,
+        out: &mut [Vec3],
+    ) {
+        self.contact.add_differential(at, weights, delta, scratch, out);
+    }
+
+    fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
+        self.contact.visit_cliques(pairs, visit);
+    }
+
+    fn visit_reach(&self, at: &Configuration, slack: f64, visit: &mut dyn FnMut(u32)) {
+        self.contact.visit_reach(at, if self.reaches_all { f64::INFINITY } else { slack }, visit);
+    }
+
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.contact.add_blocks(at, weights, scratch, matrix);
+    }
+
+    fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {
+        self.contact.advance_memory(at, timestep, memory, pairs);
+    }
+
+    fn as_any(&self) -> &dyn std::any::Any {
+        self
+    }
+}
+
+/// A ball of three meshes slides onto a floor with friction, past a tool that it never meets: what is out of reach is left out of most ticks, and
+/// the state has the same bits as if all had been asked in every tick (DEB-45, DEB-46).
+#[test]
+fn what_is_out_of_reach_changes_nothing() {
+    let meshes = balls();
+    let finest = meshes.last().unwrap();
+    let run = |reaches_all: bool| {
+        let asked = [0, 1].map(|_| Arc::new(AtomicUsize::new(0)));
+        let shapes: [(&str, Box<dyn Shape>); 2] = [
+            ("floor", Box::new(Plane { point: Vec3::X * -0.058, normal: Vec3::X })),
+            ("tool", Box::new(Sphere::new(Vec3::Y * 0.2, 0.02))),
+        ];
+        let contact = |((name, shape), asked): ((&str, Box<dyn Shape>), &Arc<AtomicUsize>)| {
+            let point = |row: &u32| {
+                let start = finest.points[*row as usize];
+                ContactPoint { row: *row, share: 1.0, start }
+            };
+            let points = finest.boundary_surface().mesh_points.iter().map(point).collect();
+            let law = ContactLaw {
+                stiffness: 50.0,
+                damping: 0.0,
+                friction: 0.4,
+                tangential_stiffness: 50.0,
+                thickness: 1e-3,
+            };
+            let contact = ShapeContact::new(name, points, shape, RigidMotion::default(), law).unwrap();
+            Box::new(Told { contact, reaches_all, asked: asked.clone() }) as Box<dyn Force>
+        };
+        let outside = shapes.into_iter().zip(&asked).map(contact).collect();
+        let force = body(&meshes, Coupling::Transpose, fixed(PATTERNS[2]));
+        let mut world = world_with(force, outside, stepper(5, Filter::None), 5e-3, |_| false);
+        set_velocities(&mut world, |_| Vec3::new(-0.1, 0.05, 0.0));
+        let mut touched = false;
+        for _ in 0..40 {
+            world.step().unwrap();
+            touched |=
+                world.energy().by_force.iter().any(|(name, energy)| name == "floor" && energy.stored > 0.0);
+        }
+        assert!(touched);
+        let asked = asked.map(|asked| asked.load(Ordering::Relaxed));
+        (world.state().clone(), asked)
+    };
+    let (told, few) = run(false);
+    let (all, many) = run(true);
+    let bits = |state: &State| {
+        let system = &state.systems[0];
+        let vectors = system.q.iter().chain(&system.v).flat_map(|v| v.to_array());
+        vectors.chain(system.memory.iter().copied()).map(f64::to_bits).collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&told), bits(&all));
+    // 32 ticks a period, of which the floor is out of reach before it is met, and the tool always
+    assert_eq!(many, [40 * 32; 2]);
+    assert!(few[0] < many[0] && few[1] == 0, "{few:?}");
 }

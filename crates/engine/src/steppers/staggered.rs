@@ -9,15 +9,16 @@ use souple_table::{Parameter, Range as Allowed, Value};
 use crate::holding::HeldPoints;
 use crate::kept::Summed;
 use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Pace, Push};
-use crate::state::{SystemState, pairs_of};
-use crate::system::{System, SystemWorkspace};
+use crate::state::SystemState;
+use crate::system::{Rows, Surroundings, System, SystemWorkspace};
 
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// A step is `2^halvings` ticks. At each tick the points of the highest rate are pushed, and of one other rate at most, in
 /// turn: no tick has much more to do than another. All points move at every tick with the velocity they have, so that
 /// those pushed seldom are seen where they are. Forces from outside act at every tick, but those that couple no rows:
-/// nothing can make them stiff, they are evaluated once a step and act at each point's own dates.
+/// nothing can make them stiff, they are evaluated once a step and act at each point's own dates. What is out of
+/// reach of all it could push (see [`crate::Force::visit_reach`]) waits until it is not.
 #[derive(Debug)]
 pub struct Staggered {
     pub halvings: u32,
@@ -110,14 +111,33 @@ impl Schedule {
     }
 }
 
+/// What a force has to do with the ticks of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// It is the elasticity of a body with levels.
+    Inside,
+    /// It comes from outside and couples no rows: it is the same throughout.
+    Steady,
+    /// It comes from outside and couples rows: it may be stiff, and pushes in every tick.
+    Coupling,
+    /// It would, but is out of reach of all of them.
+    OutOfReach,
+}
+
 /// Scratch of this stepper.
 #[derive(Debug, Default)]
 pub struct StaggeredBuffers {
     /// Rows that forces from outside couple.
     watched: Vec<u32>,
     is_watched: Vec<bool>,
-    /// By force, whether it comes from outside and couples rows: it may be stiff, and pushes in every tick.
-    couples: Vec<bool>,
+    /// By force.
+    parts: Vec<Part>,
+    /// Whether there are rows that forces couple, but do not reach yet: these are not watched.
+    leaves_out: bool,
+    /// Where rows were when it was looked who reaches what.
+    from: Vec<Vec3>,
+    /// How far points that move by themselves may come from there until it is looked again [m].
+    slack: f64,
     /// Rows of no body with levels.
     others: Vec<Range<usize>>,
     /// Accelerations that stay the same throughout the step.
@@ -129,24 +149,38 @@ fn bodies(system: &System) -> impl Iterator<Item = (usize, &dyn Levels)> {
 }
 
 impl StaggeredBuffers {
-    /// As the pairs of forces are now.
-    fn prepare(&mut self, system: &System, state: &SystemState) {
+    /// As the rows and pairs are now, where rows come no farther than `slack` [m].
+    fn prepare(&mut self, stage: &Reading, slack: f64) {
+        let Reading { system, around, rows, state } = stage;
         self.is_watched.clear();
-        self.is_watched.resize(state.q.len(), false);
-        self.couples.clear();
+        self.is_watched.resize(rows.positions.len(), false);
+        self.parts.clear();
+        self.leaves_out = false;
         for (index, force) in system.forces.iter().enumerate() {
-            // what comes and goes within a step is looked at in every tick, also where nothing touches just now
-            let mut couples = force.declaration().changing_pattern;
+            let at = system.view(index, rows, state, around);
+            let (mut coupled, mut reached) = (0, 0);
             if force.levels().is_none() {
-                force.visit_cliques(&state.pairs[pairs_of(&state.pairs, index)], &mut |rows| {
-                    couples = true;
-                    rows.iter().for_each(|row| self.is_watched[*row as usize] = true);
+                force.visit_cliques(at.pairs, &mut |rows| coupled += rows.len());
+                force.visit_reach(&at, slack, &mut |row| {
+                    reached += 1;
+                    self.is_watched[row as usize] = true;
                 });
             }
-            self.couples.push(couples);
+            self.leaves_out |= reached < coupled;
+            self.parts.push(match (force.levels(), coupled, reached) {
+                (Some(_), ..) => Part::Inside,
+                (None, _, 1..) => Part::Coupling,
+                (None, 1.., 0) => Part::OutOfReach,
+                // what comes and goes within a step is looked at in every tick, also where nothing touches just now
+                (None, 0, 0) if force.declaration().changing_pattern => Part::OutOfReach,
+                (None, 0, 0) => Part::Steady,
+            });
         }
         self.watched.clear();
-        self.watched.extend((0..state.q.len() as u32).filter(|row| self.is_watched[*row as usize]));
+        self.watched.extend((0..self.is_watched.len() as u32).filter(|row| self.is_watched[*row as usize]));
+    }
+
+    fn list_others(&mut self, system: &System, row_count: usize) {
         self.others.clear();
         let mut next = 0;
         // bodies have their rows one after the other
@@ -155,8 +189,16 @@ impl StaggeredBuffers {
             self.others.push(next..rows.start);
             next = rows.end;
         }
-        self.others.push(next..state.q.len());
+        self.others.push(next..row_count);
     }
+}
+
+/// What forces are looked at with.
+struct Reading<'a> {
+    system: &'a System,
+    around: &'a Surroundings<'a>,
+    rows: &'a Rows,
+    state: &'a SystemState,
 }
 
 /// What a step is made with.
@@ -170,12 +212,12 @@ struct Stage<'a, 'b> {
 }
 
 impl Stage<'_, '_> {
-    /// Sums the forces from outside that couple rows, or those that do not; whether there is any.
-    fn sum_outside(&mut self, coupling: bool) -> bool {
+    /// Sums the forces from outside that have this part; whether there is any.
+    fn sum_outside(&mut self, part: Part) -> bool {
         let (Step { system, around, .. }, ws) = (*self.step, &mut *self.ws);
         let mut is_any = false;
         for (index, force) in system.forces.iter().enumerate() {
-            if force.levels().is_none() && self.buffers.couples[index] == coupling {
+            if self.buffers.parts[index] == part {
                 let at = system.view(index, &ws.rows, self.next, around);
                 force.add_force(&at, &mut ws.scratches[index], &mut ws.row_force);
                 is_any = true;
@@ -187,7 +229,7 @@ impl Stage<'_, '_> {
     /// Accelerations by forces that couple no rows: the same throughout the step. They come with the elastic forces, at
     /// each point's own dates, so that what is in balance does not quiver.
     fn hold_steady(&mut self) {
-        self.sum_outside(false);
+        self.sum_outside(Part::Steady);
         let (ws, steady) = (&mut *self.ws, &mut self.buffers.steady);
         steady.clear();
         steady.resize(ws.row_force.len(), Vec3::ZERO);
@@ -205,7 +247,7 @@ impl Stage<'_, '_> {
     /// Pushes by the forces from outside that couple rows.
     fn push_from_outside(&mut self, tick: f64) {
         let clock = std::time::Instant::now();
-        if self.sum_outside(true) {
+        if self.sum_outside(Part::Coupling) {
             let (system, ws, buffers) = (self.step.system, &mut *self.ws, &*self.buffers);
             for row in &buffers.watched {
                 ws.row_force[*row as usize] = ws.row_force[*row as usize] * tick;
@@ -287,6 +329,56 @@ impl Stage<'_, '_> {
         rows.time = end;
     }
 
+    /// Looks which rows forces reach, as far as these come until the end of the step, `left` [s], at twice their speed.
+    fn look_around(&mut self, left: f64) {
+        let Step { system, around, .. } = *self.step;
+        let leverage = bodies(system)
+            .map(|(index, levels)| levels.leverage(&self.ws.scratches[index]))
+            .fold(1.0, f64::max);
+        // as the step begins all rows are in place; what feeds itself a tick late is not asked more often than once a tick
+        if left < self.step.timestep && leverage.is_finite() {
+            follow(system, Followers::All, self.ws);
+        }
+        let fastest = self.most(|rows, row| rows.velocities[row].length_sq()).sqrt();
+        self.buffers.slack = 2.0 * fastest * left;
+        // what may come from anywhere is reached everywhere
+        let slack = if leverage.is_finite() { self.buffers.slack * leverage } else { f64::INFINITY };
+        let reading = Reading { system, around, rows: &self.ws.rows, state: self.next };
+        self.buffers.prepare(&reading, slack);
+        self.buffers.from.clone_from(&self.ws.rows.positions);
+    }
+
+    /// Whether points may come farther in this tick than it was looked for: at twice their speed, since pushes come before they move.
+    fn is_slack_used(&self, tick_length: f64) -> bool {
+        let from = &self.buffers.from;
+        let farthest = self.most(|rows, row| (rows.positions[row] - from[row]).length_sq()).sqrt();
+        let fastest = self.most(|rows, row| rows.velocities[row].length_sq()).sqrt();
+        farthest + 2.0 * fastest * tick_length > self.buffers.slack
+    }
+
+    /// The greatest value of the points that move by themselves.
+    fn most(&self, value: impl Fn(&Rows, usize) -> f64) -> f64 {
+        let active = bodies(self.step.system)
+            .flat_map(|(index, levels)| levels.active(&self.ws.scratches[index]))
+            .map(|row| *row as usize);
+        let others = self.buffers.others.iter().flat_map(Clone::clone);
+        active.chain(others).map(|row| value(&self.ws.rows, row)).fold(0.0, f64::max)
+    }
+
+    /// Moves memories on. What is out of reach waits for the last tick, where all rows are in place: its memory is then as if it had been
+    /// asked all along.
+    fn advance_memory(&mut self, tick_length: f64, is_last: bool) {
+        let Step { system, around, .. } = *self.step;
+        if is_last && self.buffers.leaves_out {
+            follow(system, Followers::All, self.ws);
+        }
+        let moves_on = |index: usize| {
+            let waits = self.buffers.parts[index] == Part::OutOfReach;
+            is_last || !waits || system.forces[index].declaration().changing_pattern
+        };
+        system.advance_memory_of(&moves_on, self.ws, self.next, around, tick_length, Summed::Elsewhere);
+    }
+
     /// # Errors
     /// It is broken off.
     fn run(&mut self, schedule: Schedule) -> Result<(), StepError> {
@@ -296,6 +388,7 @@ impl Stage<'_, '_> {
             let scratch = &mut self.ws.scratches[index];
             levels.adapt(&self.division, &mut self.ws.rows, memory, scratch);
         }
+        self.look_around(timestep);
         self.ws.row_force.fill(Vec3::ZERO);
         let holds = system.holds();
         if holds {
@@ -306,8 +399,11 @@ impl Stage<'_, '_> {
         self.hold_steady();
         for tick in 0..ticks {
             self.ws.interruption.check()?;
-            if system.refresh_pairs(self.ws, self.next, around) {
-                self.buffers.prepare(system, self.next);
+            let left = f64::from(ticks - tick) * tick_length;
+            if system.refresh_pairs(self.ws, self.next, around)
+                || (tick > 0 && self.buffers.leaves_out && self.is_slack_used(tick_length))
+            {
+                self.look_around(left);
             }
             self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);
@@ -315,7 +411,7 @@ impl Stage<'_, '_> {
                 self.held.sum_rates();
                 self.held.feel(system, self.next, tick_length);
             }
-            system.advance_memory(self.ws, self.next, around, tick_length, Summed::Elsewhere);
+            self.advance_memory(tick_length, tick + 1 == ticks);
             self.drift(tick_length, start + f64::from(tick + 1) * tick_length);
             follow(system, Followers::Ghosts, self.ws);
             follow(system, Followers::These(&self.buffers.watched), self.ws);
@@ -380,7 +476,7 @@ impl Stepper for Staggered {
     ) -> Result<StepReport, StepError> {
         let division = self.division(step.timestep);
         let (mut buffers, mut held) = (std::mem::take(&mut ws.staggered), std::mem::take(&mut ws.held));
-        buffers.prepare(step.system, next);
+        buffers.list_others(step.system, next.q.len());
         // all rows are points: they move where they stand
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);

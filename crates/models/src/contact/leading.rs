@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use souple_engine::obstacle::Form;
-use souple_engine::{Editable, InHand, Obstacle};
+use souple_engine::{Editable, InHand, Motion, Obstacle};
 use souple_math::Vec3;
 
 use super::carrier::Carrier;
@@ -39,6 +39,14 @@ impl Leading {
         match self {
             Self::Motion(motion) => motion.pose(time),
             Self::Carrier(carrier) => carrier.pose(own),
+        }
+    }
+
+    /// Whether the shape stays where it is as long as a step lasts.
+    pub fn rests(&self) -> bool {
+        match self {
+            Self::Motion(motion) => motion.rests(),
+            Self::Carrier(_) => false,
         }
     }
 

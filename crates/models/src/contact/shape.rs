@@ -48,6 +48,11 @@ pub trait Shape: Send + Sync + Debug {
         self.nearest(point, reach)
     }
 
+    /// Whether a point comes no nearer to it than it moves itself, as it does where the answer is the distance to a thing that rests.
+    fn is_distance(&self) -> bool {
+        false
+    }
+
     /// Rows that bear what pushes on it; none of a thing that nothing moves.
     fn bearers(&self) -> &[u32] {
         &[]
@@ -143,6 +148,10 @@ impl<S: Shape> Shape for Hollow<S> {
         // points far outside the container are deep inside its wall: none is beyond reach
         let Nearest { distance, normal, curvature } = self.0.nearest(point, f64::INFINITY)?;
         Some(Nearest { distance: -distance, normal: -normal, curvature: -curvature })
+    }
+
+    fn is_distance(&self) -> bool {
+        self.0.is_distance()
     }
 
     fn outline(&self) -> Option<Outline> {

@@ -386,6 +386,17 @@ impl Force for ShapeContact {
         self.points.iter().for_each(|point| visit(&[point.row]));
     }
 
+    // a point that touches nothing draws its anchor with it: it is seen first where that touches
+    fn visit_reach(&self, at: &Configuration, slack: f64, visit: &mut dyn FnMut(u32)) {
+        let is_told = self.shape.is_distance() && self.shape.bearers().is_empty() && self.leading.rests();
+        let (pose, reach) = (self.pose(at), self.law.thickness + slack);
+        let may_touch = |point: &&ContactPoint| {
+            let place = pose.to_shape(at.positions[point.row as usize]);
+            self.shape.nearest_in(at, place, reach).is_some_and(|nearest| nearest.distance <= reach)
+        };
+        self.points.iter().filter(|point| !is_told || may_touch(point)).for_each(|point| visit(point.row));
+    }
+
     fn add_blocks(
         &self,
         at: &Configuration,

@@ -41,6 +41,10 @@ impl Motion for Still {
     fn velocity(&self, _start: Vec3, _time: f64) -> Vec3 {
         Vec3::ZERO
     }
+
+    fn rests(&self) -> bool {
+        true
+    }
 }
 
 impl RigidMotion {
@@ -76,6 +80,10 @@ impl Motion for RigidMotion {
 
     fn spin(&self, time: f64) -> Vec3 {
         self.pose(time).angular_velocity
+    }
+
+    fn rests(&self) -> bool {
+        [&self.translation, &self.rotation].into_iter().flatten().all(|motion| motion.rests())
     }
 }
 

@@ -109,6 +109,8 @@ impl Roles {
 /// Of each point that follows: the active points that it comes to in the end, with its weights.
 #[derive(Clone, Debug, Default)]
 pub struct Following {
+    /// The most that the sizes of a point's weights sum up to; those of an active point are one.
+    pub leverage: f64,
     /// Where the entries of each point are.
     ranges: Vec<(u32, u32)>,
     entries: Vec<(u32, f64)>,
@@ -135,6 +137,8 @@ impl Following {
         for point in 0..count {
             self.compose_point(hierarchy, roles, point);
         }
+        let sizes = |point| self.of(point).iter().map(|(_, weight)| weight.abs()).sum::<f64>();
+        self.leverage = (0..count).map(sizes).fold(1.0, f64::max);
     }
 
     fn compose_point(&mut self, hierarchy: &Hierarchy, roles: &Roles, point: usize) {

@@ -139,6 +139,14 @@ impl Levels for LevelsForce {
         }
     }
 
+    fn leverage(&self, scratch: &Scratch) -> f64 {
+        match self.hierarchy.loops {
+            Loops::Activated => read(scratch).following.leverage,
+            // what feeds itself a tick late goes on for as long as it likes
+            Loops::Lagged => f64::INFINITY,
+        }
+    }
+
     fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]) {
         self.place(read(scratch), who, kind, &mut values[self.row_range()]);
     }

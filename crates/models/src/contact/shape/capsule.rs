@@ -38,6 +38,10 @@ impl Shape for Capsule {
         Some(rounded(point, centre, self.radius, flat, axis.any_orthogonal()))
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn parts(&self) -> &[Capsule] {
         std::slice::from_ref(self)
     }

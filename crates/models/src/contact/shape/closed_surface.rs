@@ -51,6 +51,10 @@ impl Shape for ClosedSurface {
         Some(Nearest { distance: closest.distance, normal: n, curvature })
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn outline(&self) -> Option<Outline> {
         Some(Outline::solid(self.distance.surface().clone()))
     }

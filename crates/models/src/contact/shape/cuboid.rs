@@ -42,6 +42,10 @@ impl Shape for Cuboid {
         Some(Nearest { distance, normal: self.axes * normal, curvature })
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn outline(&self) -> Option<Outline> {
         let corner = |index: usize| {
             let side = |axis: usize| if index >> axis & 1 == 0 { -1.0 } else { 1.0 };

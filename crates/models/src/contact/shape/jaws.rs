@@ -34,6 +34,10 @@ impl Shape for Jaws {
         }
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn parts(&self) -> &[Capsule] {
         &self.rods
     }

@@ -20,6 +20,10 @@ impl Shape for Plane {
         point.is_finite().then_some(Nearest { distance, normal: self.normal, curvature: Mat3::ZERO })
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn as_plane(&self) -> Option<(Vec3, Vec3)> {
         Some((self.point, self.normal))
     }

@@ -32,6 +32,10 @@ impl Shape for Sphere {
         Some(rounded(point, self.centre, self.radius, Mat3::ZERO, Vec3::Z))
     }
 
+    fn is_distance(&self) -> bool {
+        true
+    }
+
     fn parts(&self) -> &[Capsule] {
         std::slice::from_ref(&self.part)
     }
