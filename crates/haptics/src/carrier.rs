@@ -25,6 +25,16 @@ pub struct Rest {
     pub period: f64,
     /// Whether the hand feels the tool where it was when the period began, or what it felt then.
     pub is_held: bool,
+    pub weight: Weight,
+}
+
+/// What of the tool's mass the hand feels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Weight {
+    /// All of it: who speeds the tool up pulls at it.
+    Felt,
+    /// None: the tool is sped up as the device is, by as much as the device could draw it with.
+    Unfelt,
 }
 
 /// A hand with a tool.
@@ -37,6 +47,8 @@ pub struct HandCarrier {
     led: Option<Vec3>,
     /// Whether the loop has its device.
     is_held: bool,
+    /// Where device and tool are at the start [m].
+    start: Vec3,
 }
 
 /// All that evolves, but for what reflexes remember.
@@ -51,10 +63,12 @@ struct HandState {
     age: f64,
     /// Where the tool was when the period began [m]; of a tool that holds points, what it felt then [N].
     held: Vec3,
+    /// Of the device, where it moved last [m/s²].
+    acceleration: Vec3,
 }
 
 /// Numbers of a [`HandState`].
-const LEN: usize = 28;
+const LEN: usize = 31;
 /// A tick that lacks this part of it is over: times are sums.
 const ROUNDING: f64 = 1e-9;
 /// So near to the beginning of a period it begins [s]: times are sums.
@@ -79,6 +93,7 @@ impl HandState {
             since_tick: numbers[23],
             age: numbers[24],
             held: vector(25),
+            acceleration: vector(28),
         }
     }
 
@@ -88,7 +103,7 @@ impl HandState {
             numbers[at..at + values.len()].copy_from_slice(values);
             at += values.len();
         };
-        let Self { arm, tool, port, since_tick, age, held } = self;
+        let Self { arm, tool, port, since_tick, age, held, acceleration } = self;
         for moving in [arm.hand.place, arm.hand.velocity] {
             put(&moving.to_array());
         }
@@ -98,12 +113,18 @@ impl HandState {
         }
         put(&[port.energy, port.engaged, port.jump, *since_tick, *age]);
         put(&held.to_array());
+        put(&acceleration.to_array());
     }
 }
 
 impl HandCarrier {
     pub fn new(rest: Rest, arm: Option<Arm>) -> Self {
-        Self { rest, arm, led: None, is_held: true }
+        Self { rest, arm, led: None, is_held: true, start: Vec3::ZERO }
+    }
+
+    /// With device and tool at a place, where the device stays until it is led elsewhere.
+    pub fn starting_at(self, place: Vec3) -> Self {
+        Self { led: Some(place), start: place, ..self }
     }
 
     /// Whether somebody is at the device.
@@ -120,6 +141,7 @@ impl HandCarrier {
 
     /// The device moves on: led evenly to where it is to be at the end of the period, or held by the arm.
     fn move_device(&self, h: f64, history: &[f64], state: &mut HandState) {
+        let before = state.arm.hand.velocity;
         if let Some(place) = self.led {
             let period = self.rest.period;
             let into = state.arm.time / period;
@@ -135,13 +157,23 @@ impl HandCarrier {
         } else {
             state.arm.time += h;
         }
+        state.acceleration = (state.arm.hand.velocity - before) / h;
     }
 
     /// The tool moves on between what presses on it and what draws it: implicit in both, along its own motion.
     fn move_tool(&self, h: f64, pressed: &Pressed, state: &mut HandState) {
         let (coupling, engaged) = (self.rest.port.coupling, state.port.engaged);
         let Moving { place, velocity } = state.tool;
-        let pull = coupling.pull(state.arm.hand, state.tool) * engaged;
+        let pull = match self.rest.weight {
+            Weight::Felt => coupling.pull(state.arm.hand, state.tool),
+            // sped up as the device is, and drawn to where that will be when the tool has moved: the spring does neither
+            Weight::Unfelt => {
+                let Moving { place, velocity } = state.arm.hand;
+                let ahead = Moving { place: place + velocity * h, velocity };
+                coupling.pull(ahead, state.tool) + state.acceleration * self.rest.mass
+            }
+        };
+        let pull = pull * engaged;
         let mut carried = self.rest.mass + h * h * pressed.stiffness;
         let mut impulse = velocity * self.rest.mass + pressed.force * h;
         if !self.has_device(state) {
@@ -209,7 +241,14 @@ impl Carrier for HandCarrier {
 
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
-        HandState { port: Port::start(), ..HandState::default() }.write(&mut memory[..LEN]);
+        let still = Moving { place: self.start, velocity: Vec3::ZERO };
+        let state = HandState {
+            arm: ArmState { hand: still, ..ArmState::default() },
+            tool: still,
+            port: PortState { place: self.start, ..Port::start() },
+            ..HandState::default()
+        };
+        state.write(&mut memory[..LEN]);
     }
 
     fn pose(&self, memory: &[f64]) -> Pose {
@@ -292,5 +331,68 @@ impl Carrier for HandCarrier {
         }
         self.is_held = value == 1.0;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coupling::Coupling;
+
+    const PERIOD: f64 = 1e-3;
+    const SWING: f64 = 0.03;
+    const OMEGA: f64 = std::f64::consts::TAU / 0.6;
+
+    /// The most that a hand feels which swings a tool of 50 g in the air for two seconds, from rest [N].
+    fn felt_in_the_air(weight: Weight) -> f64 {
+        let port = Port { coupling: Coupling::DEFAULT, passive: false };
+        let rest = Rest { port, mass: 0.05, period: PERIOD, is_held: false, weight };
+        let mut carrier = HandCarrier::new(rest, None).starting_at(Vec3::Y);
+        let mut memory = vec![0.0; carrier.memory_len()];
+        carrier.initial_memory(&mut memory);
+        let mut most = 0.0_f64;
+        for period in 1..=2000 {
+            let end = f64::from(period) * PERIOD;
+            carrier.lead(Vec3::Y + Vec3::X * (SWING * (1.0 - (OMEGA * end).cos())));
+            carrier.advance(&|_| Pressed::default(), end - PERIOD, PERIOD, &mut memory);
+            most = most.max(carrier.in_hand(&memory).force.length());
+        }
+        let [tool, device] = [carrier.in_hand(&memory).tool, carrier.in_hand(&memory).device];
+        assert!((tool - device).length() < 1e-3, "{tool:?} {device:?}");
+        most
+    }
+
+    /// Who swings a tool in the air feels `m a`, and more until what the start set swinging is damped; one whose mass is not felt feels what a
+    /// tick's delay of the acceleration comes to: a speed `a T` that spring and damper stop, with `(√(k m) + c) a T` at most.
+    #[test]
+    fn masses_may_be_unfelt() {
+        let acceleration = SWING * OMEGA * OMEGA;
+        let felt = felt_in_the_air(Weight::Felt);
+        assert!(felt >= 0.05 * acceleration && felt < 2.0 * 0.05 * acceleration, "{felt}");
+        let impedance = (Coupling::DEFAULT.stiffness * 0.05).sqrt() + Coupling::DEFAULT.damping;
+        let unfelt = felt_in_the_air(Weight::Unfelt);
+        assert!(unfelt <= impedance * acceleration * TICK, "{unfelt}");
+    }
+
+    /// A device that leaps draws its tool with no more than it gives, whether the mass is felt or not.
+    #[test]
+    fn leaps_are_limited() {
+        for weight in [Weight::Felt, Weight::Unfelt] {
+            let port = Port { coupling: Coupling::DEFAULT, passive: true };
+            let rest = Rest { port, mass: 0.05, period: PERIOD, is_held: false, weight };
+            let mut carrier = HandCarrier::new(rest, None).starting_at(Vec3::ZERO);
+            let mut memory = vec![0.0; carrier.memory_len()];
+            carrier.initial_memory(&mut memory);
+            carrier.lead(Vec3::X);
+            for period in 0..10 {
+                let before = carrier.in_hand(&memory).tool_velocity;
+                carrier.advance(&|_| Pressed::default(), f64::from(period) * PERIOD, PERIOD, &mut memory);
+                let gained = (carrier.in_hand(&memory).tool_velocity - before).length();
+                assert!(
+                    gained <= Coupling::DEFAULT.limit * PERIOD / 0.05 * (1.0 + 1e-9),
+                    "{weight:?} {gained}"
+                );
+            }
+        }
     }
 }

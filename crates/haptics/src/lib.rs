@@ -18,7 +18,7 @@ mod service;
 mod smoothing;
 
 pub use arm::{Arm, ArmState};
-pub use carrier::{HandCarrier, Rest};
+pub use carrier::{HandCarrier, Rest, Weight};
 pub use coupling::{Coupling, Moving};
 pub use device::{ChooseDevice, DEVICES, Device, DeviceChoice, Devices};
 pub use emulated::EmulatedHand;

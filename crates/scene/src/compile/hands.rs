@@ -43,7 +43,13 @@ fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, Box<dyn Force>)>
     let chosen = hand.device.as_ref()?;
     let device = (chosen.entry.build)(&chosen.values, intent);
     let is_held = hand.between == Between::Hold;
-    let rest = Rest { port: hand.port, mass: hand.mass, period: draft.spec.world.period, is_held };
+    let rest = Rest {
+        port: hand.port,
+        mass: hand.mass,
+        period: draft.spec.world.period,
+        is_held,
+        weight: hand.weight,
+    };
     let carrier = Box::new(HandCarrier::new(rest, device.arm().cloned()));
     let force = hand.touch.name.clone();
     let made: Result<Box<dyn Force>, _> =

@@ -1,6 +1,6 @@
 //! Hands of people with tools: at which device, and how they feel what they touch.
 
-use souple_haptics::{BETWEEN, Between, ChooseDevice, Coupling, DEVICES, Port};
+use souple_haptics::{BETWEEN, Between, ChooseDevice, Coupling, DEVICES, Port, Weight};
 use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
 use souple_table::{Range, Value};
@@ -78,6 +78,12 @@ pub(crate) static HAND: Keys = Keys::new(
         ),
         Key::new("tool", Shape::Entry(TOOL), "its shape, where it is at the start").required(),
         Key::number("mass", "kg", Range::POSITIVE, "of the tool").or(Value::Number(0.05)),
+        Key::new(
+            "feels_mass",
+            Shape::Boolean,
+            "whether the hand speeds up that mass itself; `false`: it feels what the tool touches alone",
+        )
+        .or(Value::Boolean(true)),
         Key::new("body", Shape::Text, "the body that it touches").required(),
         Key::new(
             "region",
@@ -105,6 +111,7 @@ pub struct HandSpec {
     pub tool: Option<Chosen<BuildShape>>,
     /// [kg]
     pub mass: f64,
+    pub weight: Weight,
     /// Who is touched, and how; of no shape that has a name.
     pub touch: Contact,
     pub port: Port,
@@ -137,6 +144,7 @@ impl HandSpec {
             motion: reader.table("motion").and_then(|motion| MotionSpec::read(&motion)),
             tool: reader.entry("tool", &SHAPES),
             mass: reader.number("mass"),
+            weight: if reader.boolean("feels_mass") { Weight::Felt } else { Weight::Unfelt },
             touch: Contact {
                 name: hand_force(&name),
                 body: reader.text("body"),

@@ -398,13 +398,13 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "hand_liver_release_light",
         capabilities: &["DEB-48"],
-        what: "the most that a hand is pulled in by while it presses the organ and lets go of it, with a tool of a gram: less than 1 % of what it feels at most",
-        settings: &["hands.right.mass=\"1 g\""],
+        what: "the most that a hand is pulled in by while it presses the organ and lets go of it, with a tool of 5 g whose mass it does not feel: less than 1 % of what it feels at most",
+        settings: &["hands.right.mass=\"5 g\"", "hands.right.feels_mass=false"],
         reading: Reading::component("force", 2).taking(Statistic::Min),
         reference: -0.01 * 1.225,
         tolerance: Tolerance::AtLeast,
-        source: "specification, V-44: 1 % of the peak. What the hand feels when nothing touches is the mass of its tool: 5.8 % with 50 g",
-        mutation: "hands.right.mass=\"50 g\"",
+        source: "specification, V-44: 1 % of the peak. What the hand feels when nothing touches is its tool: 5.8 % with 50 g that are felt",
+        mutation: "hands.right.feels_mass=true",
         ..LIVER
     },
 ];
