@@ -224,11 +224,15 @@ fn take(
     Ok(())
 }
 
-/// Takes a force away, with its memory.
+/// Takes a force away, with its memory and its pairs.
 fn release(system: &mut System, state: &mut SystemState, force: usize) {
     let range = system.memory_range(force);
     state.memory.drain(range);
     system.forces.remove(force);
+    let number = force as u64;
+    state.pairs.retain(|pair| pair.force != number);
+    // those after it have moved up
+    state.pairs.iter_mut().filter(|pair| pair.force > number).for_each(|pair| pair.force -= 1);
 }
 
 /// The number of the force of a hand.

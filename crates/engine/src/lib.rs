@@ -53,7 +53,7 @@ pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState
 pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub use tangent::Curvature;
-pub use tool::{Tool, Toolbox};
+pub use tool::{HeldTool, Tool, Toolbox};
 pub use world::{
     CommittedRows, EnergyReport, Field, FieldStep, Model, ResumeError, Workspace, World, WorldError,
 };

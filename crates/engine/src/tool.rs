@@ -15,10 +15,31 @@ pub struct Tool {
     pub values: Vec<(String, Vec<f64>)>,
     /// Where the shape's own origin is [m].
     pub place: Vec3,
-    /// Of each point that it meets [N/m].
+    /// Of each point that it meets, or of a triangle of mean area [N/m].
     pub stiffness: f64,
     /// Rows that it may meet.
     pub rows: Vec<u32>,
+    /// How a hand holds it that gives way, and what it meets between its rows; `None`: it meets these alone, and is where it is led to.
+    pub held: Option<HeldTool>,
+}
+
+/// A tool on a spring, which meets triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldTool {
+    /// Of its rows at rest [m].
+    pub places: Vec<Vec3>,
+    /// Corners among its rows, in the order that turns left seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Coulomb's coefficient.
+    pub friction: f64,
+    /// [kg]
+    pub mass: f64,
+    /// Of the spring from the hand to the tool [N/m].
+    pub spring: f64,
+    /// Of the damper beside it [N s/m].
+    pub damper: f64,
+    /// The most that these give [N].
+    pub limit: f64,
 }
 
 /// Makes the forces of tools.
@@ -40,7 +61,34 @@ impl Tool {
             Some(row) if *row as usize >= row_count => {
                 Err(format!("there is no row {row}; the system has {row_count}"))
             }
-            Some(_) => Ok(()),
+            Some(_) => self.held.as_ref().map_or(Ok(()), |held| held.check(self.rows.len())),
         }
+    }
+}
+
+impl HeldTool {
+    /// # Errors
+    /// Its triangles are not of its rows, or a number does not fit.
+    fn check(&self, row_count: usize) -> Result<(), String> {
+        if self.places.len() != row_count {
+            return Err(format!("it is told {} places of {row_count} rows", self.places.len()));
+        }
+        if let Some(corner) = self.triangles.iter().flatten().find(|corner| **corner as usize >= row_count) {
+            return Err(format!("a triangle has the corner {corner}; there are {row_count} rows"));
+        }
+        for place in &self.places {
+            check_place("places", *place).map_err(|error| error.to_string())?;
+        }
+        for (field, value) in [("mass", self.mass), ("spring", self.spring), ("limit", self.limit)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(format!("`{field}` is {value}, but must be a finite number above 0"));
+            }
+        }
+        for (field, value) in [("friction", self.friction), ("damper", self.damper)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(format!("`{field}` is {value}, but must be a finite number of at least 0"));
+            }
+        }
+        Ok(())
     }
 }

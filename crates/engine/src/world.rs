@@ -10,6 +10,7 @@ use crate::control::Control;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
 use crate::force::{Configuration, Force, Scratch};
+use crate::hand::is_hand_name;
 use crate::interruption::Interruption;
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
@@ -284,8 +285,8 @@ impl World {
     pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
-        self.fit_workspace();
         if edit.changes_forces(&self.model) {
+            self.fit_workspace();
             self.forget_couplings();
         }
         let period = self.state.period;
@@ -325,10 +326,11 @@ impl World {
         }
     }
 
-    /// A scratch for each force. Only hands and tools come and go, after all other forces, and theirs hold nothing.
+    /// A scratch for each force. Only hands and tools come and go, after all other forces: theirs are made anew, whoever stood there before.
     fn fit_workspace(&mut self) {
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
-            ws.scratches.truncate(system.forces.len());
+            let first_hand = system.forces.iter().position(|force| is_hand_name(force.name()));
+            ws.scratches.truncate(first_hand.unwrap_or(system.forces.len()));
             let first_new = ws.scratches.len();
             ws.scratches.extend(system.forces[first_new..].iter().map(|force| force.new_scratch()));
         }

@@ -16,6 +16,7 @@ mod pace;
 mod port;
 mod service;
 mod smoothing;
+mod toolbox;
 
 pub use arm::{Arm, ArmState};
 pub use carrier::{HandCarrier, Rest, Weight};
@@ -27,6 +28,7 @@ pub use pace::{Histogram, Pace};
 pub use port::{Port, PortState};
 pub use service::{DeviceNow, Feels, Served, Service, ServiceError, Station, Tick, Told, Toll};
 pub use smoothing::{BETWEEN, Between, ForceSmoothing, Smoothing};
+pub use toolbox::HandTools;
 
 /// Seconds between two forces that a device is given.
 pub const TICK: f64 = 1e-3;

@@ -79,6 +79,16 @@ impl TriangleSurface {
         self.triangles[triangle as usize].map(|point| self.points[point as usize])
     }
 
+    /// The mean length of the edges of its triangles [m]; those of two triangles count twice.
+    pub fn mean_edge(&self) -> f64 {
+        let mut sum = 0.0;
+        for triangle in 0..self.triangles.len() as u32 {
+            let [a, b, c] = self.corners(triangle);
+            sum += (b - a).length() + (c - b).length() + (a - c).length();
+        }
+        sum / (3 * self.triangles.len().max(1)) as f64
+    }
+
     /// Half the cross product of two sides: area times outward normal [m²].
     pub fn area_vector(&self, triangle: u32) -> Vec3 {
         let [a, b, c] = self.corners(triangle);

@@ -1,7 +1,7 @@
 //! Commands as text, in recordings and snapshots.
 
 use serde_json::{Value, json};
-use souple_engine::{Command, Edit, Grip, Held, Tool};
+use souple_engine::{Command, Edit, Grip, Held, HeldTool, Tool};
 use souple_math::Vec3;
 
 /// A command as it stands in recordings and snapshots.
@@ -31,10 +31,11 @@ pub fn command_to_json(command: &Command) -> Value {
             })
         }
         Edit::Touch { system, hand, tool } => {
-            let Tool { shape, values, place, stiffness, rows } = tool;
+            let Tool { shape, values, place, stiffness, rows, held } = tool;
             json!({
                 "kind": "touch", "system": system, "hand": hand, "shape": shape, "values": values,
                 "place": place.to_array(), "stiffness": stiffness, "rows": rows,
+                "held": held.as_ref().map(held_tool_to_json),
             })
         }
         Edit::MoveHand { system, hand, place } => {
@@ -97,6 +98,7 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
                 place: vector("place")?,
                 stiffness: number("stiffness")?,
                 rows: rows.ok_or("`rows` of a command holds something that is not a row")?,
+                held: if edit["held"].is_null() { None } else { Some(held_tool_from_json(&edit["held"])?) },
             };
             Edit::Touch { system, hand: index("hand")?, tool }
         }
@@ -112,6 +114,32 @@ fn vector_of(value: &Value, key: &str) -> Result<Vec3, String> {
     let number =
         |i: usize| value[i].as_f64().ok_or_else(|| format!("`{key}` of a command is not three numbers"));
     Ok(Vec3::new(number(0)?, number(1)?, number(2)?))
+}
+
+fn held_tool_to_json(held: &HeldTool) -> Value {
+    let HeldTool { places, triangles, friction, mass, spring, damper, limit } = held;
+    json!({
+        "places": places.iter().map(|place| place.to_array()).collect::<Vec<_>>(), "triangles": triangles,
+        "friction": friction, "mass": mass, "spring": spring, "damper": damper, "limit": limit,
+    })
+}
+
+fn held_tool_from_json(value: &Value) -> Result<HeldTool, String> {
+    let list = |key: &str| value[key].as_array().ok_or_else(|| format!("a held tool has no list `{key}`"));
+    let number = |key: &str| value[key].as_f64().ok_or_else(|| format!("a held tool has no number `{key}`"));
+    let corner = |corner: &Value| corner.as_u64().and_then(|corner| u32::try_from(corner).ok());
+    let triangle =
+        |triangle: &Value| Some([corner(&triangle[0])?, corner(&triangle[1])?, corner(&triangle[2])?]);
+    let triangles: Option<Vec<[u32; 3]>> = list("triangles")?.iter().map(triangle).collect();
+    Ok(HeldTool {
+        places: list("places")?.iter().map(|place| vector_of(place, "places")).collect::<Result<_, _>>()?,
+        triangles: triangles.ok_or("`triangles` of a held tool holds something that is not three corners")?,
+        friction: number("friction")?,
+        mass: number("mass")?,
+        spring: number("spring")?,
+        damper: number("damper")?,
+        limit: number("limit")?,
+    })
 }
 
 /// `[row, share, offset]`.
@@ -162,6 +190,27 @@ mod tests {
                     place: Vec3::new(0.1, 0.7, -1.0 / 3.0),
                     stiffness: 1e3 / 7.0,
                     rows: vec![0, 7, 3],
+                    held: None,
+                },
+            },
+            Edit::Touch {
+                system: 0,
+                hand: 1,
+                tool: Tool {
+                    shape: "sphere".into(),
+                    values: vec![("radius".into(), vec![0.1])],
+                    place: Vec3::X,
+                    stiffness: 1e3 / 7.0,
+                    rows: vec![0, 7, 3],
+                    held: Some(HeldTool {
+                        places: vec![Vec3::ZERO, Vec3::X * (1.0 / 3.0), Vec3::Y],
+                        triangles: vec![[0, 1, 2]],
+                        friction: 0.3,
+                        mass: 0.1 / 3.0,
+                        spring: 270.0,
+                        damper: 5.4,
+                        limit: 13.7,
+                    }),
                 },
             },
             Edit::Push { system: 0, blocks: 2..7, velocity: Vec3::new(0.1, -2.0, 3e-7) },

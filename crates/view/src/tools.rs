@@ -15,6 +15,8 @@ pub struct Making {
     pub values: SizedValues,
     /// How far its front is from its origin, in its size.
     pub front: f64,
+    /// Whether it is made of rounded parts, which meet triangles; others meet points.
+    pub is_rounded: bool,
     /// How far about its middle a flat front reaches, in its size: it is put flat on a surface. `None`: it is held from the eye.
     pub flat: Option<f64>,
 }
@@ -34,6 +36,7 @@ pub static TOOLS: Table<Making> = Table {
                 shape: "sphere",
                 values: |size, _| vec![number("radius", 0.5 * size)],
                 front: 0.5,
+                is_rounded: true,
                 flat: None,
             },
         ),
@@ -47,6 +50,7 @@ pub static TOOLS: Table<Making> = Table {
                     vec![number("radius", THICK * size), vector("from", Vec3::ZERO), vector("to", back)]
                 },
                 front: THICK,
+                is_rounded: true,
                 flat: None,
             },
         ),
@@ -57,6 +61,7 @@ pub static TOOLS: Table<Making> = Table {
                 shape: "box",
                 values: |size, direction| facing([size, size, size], direction),
                 front: 0.5,
+                is_rounded: false,
                 flat: Some(0.5 * SQRT_2),
             },
         ),
@@ -67,6 +72,7 @@ pub static TOOLS: Table<Making> = Table {
                 shape: "box",
                 values: |size, direction| facing([WIDE * size, WIDE * size, THIN * size], direction),
                 front: 0.5 * THIN,
+                is_rounded: false,
                 flat: Some(0.5 * WIDE * SQRT_2),
             },
         ),

@@ -22,7 +22,6 @@ mod tests;
 mod tool_contact;
 #[cfg(test)]
 mod tool_tests;
-mod toolbox;
 
 pub use carrier::{Carrier, Pressed};
 pub use imposed::{Displacing, ImposedContact, ImposedLaw};
@@ -31,4 +30,3 @@ pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};
 pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};
 pub use tool_contact::{ToolContact, ToolSurface, ToolTouch};
-pub use toolbox::ShapeToolbox;

@@ -326,7 +326,7 @@ pub(super) fn tool_surface(
     }
     let system = draft.spec.systems.get(body.system)?;
     let horizon = draft.spec.world.period / f64::from(system.steps_per_period);
-    let reach = mean_edge(&surface);
+    let reach = surface.mean_edge();
     Some(Some((ToolSurface { surface, rows }, [reach, horizon])))
 }
 
@@ -393,7 +393,7 @@ fn against_body(
         return refuse(message, "bodies of one system");
     }
     let surfaces = bodies.map(|placed| placed.mesh.boundary_surface());
-    let reach = f64::max(mean_edge(&surfaces[0]), mean_edge(&surfaces[1])) + contact.thickness;
+    let reach = f64::max(surfaces[0].mean_edge(), surfaces[1].mean_edge()) + contact.thickness;
     let mut sides = bodies.iter().zip(surfaces).map(|(placed, surface)| {
         // one stiffness for each area on both sides, of which a point of the region's mean area has the whole
         let share = |area: &f64| contact.weigh.share(area / touching.mean_area);
@@ -417,16 +417,6 @@ fn against_body(
         Ok(force) => Some(force),
         Err(error) => refuse(error.to_string(), "bodies with closed surfaces"),
     }
-}
-
-/// Mean length of the edges of a surface [m].
-pub fn mean_edge(surface: &TriangleSurface) -> f64 {
-    let mut sum = 0.0;
-    for triangle in 0..surface.triangles.len() as u32 {
-        let [a, b, c] = surface.corners(triangle);
-        sum += (b - a).length() + (c - b).length() + (a - c).length();
-    }
-    sum / (3 * surface.triangles.len().max(1)) as f64
 }
 
 /// The triangles of a surface file, or the boundary of a volume mesh.

@@ -4,7 +4,6 @@ use souple_engine::{ContactPoint, Surroundings};
 use souple_table::in_number;
 
 use super::Draft;
-use super::contact::mean_edge;
 
 /// A point deeper than this part of the mean edge of its surface is no touch any more: a body at rest sinks in by a part
 /// of what its elements are pressed together, which is far less.
@@ -23,7 +22,7 @@ pub fn warn(draft: &mut Draft) {
     let of_hands = draft.spec.hands.iter().map(|hand| &hand.touch);
     for contact in draft.spec.contacts.iter().chain(of_hands) {
         let Some(body) = draft.body(&contact.body) else { continue };
-        let limit = DEEP * mean_edge(&body.mesh.boundary_surface());
+        let limit = DEEP * body.mesh.boundary_surface().mean_edge();
         let Some(found) = deepest(draft, body.system, &contact.name, contact.thickness + limit) else {
             continue;
         };

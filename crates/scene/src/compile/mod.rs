@@ -40,7 +40,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use souple_engine::{Model, State, System};
-use souple_models::contact::ShapeToolbox;
+use souple_haptics::HandTools;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
@@ -106,7 +106,11 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         log,
         bodies: Vec::new(),
         systems: Vec::new(),
-        model: Model { period: spec.world.period, toolbox: Some(Arc::new(ShapeToolbox)), ..Model::default() },
+        model: Model {
+            period: spec.world.period,
+            toolbox: Some(Arc::new(HandTools { period: spec.world.period })),
+            ..Model::default()
+        },
         state: State::default(),
         warnings: Vec::new(),
         joints: Vec::new(),
@@ -145,11 +149,11 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_heat(&mut draft);
     doubts::warn(&mut draft);
     levels::warn_of_budgets(&mut draft);
+    imposing::warn(&mut draft);
     freedom::check(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
-    imposing::warn(&mut draft);
         return None;
     }
     for (system, spec) in draft.systems.iter().zip(&spec.systems) {

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use souple_engine::hand::hand_name;
 use souple_engine::steppers::Stability;
-use souple_engine::{Edit, Force, Grip, Hand, Tool, World};
+use souple_engine::{Edit, Force, Grip, Hand, HeldTool, InHand, Tool, World};
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
 use super::Shown;
+use super::shown::has_inside;
 use crate::hub::PageId;
 use crate::protocol::{HandShown, Holds, Wish};
 
@@ -37,8 +38,16 @@ struct Holding {
 const FREQUENCY: f64 = 14.0;
 /// Time over which a hand's damping takes the speed of what it holds [s].
 const DAMPING_TIME: f64 = 0.02;
-/// How fast a tool goes, in its size a second: a mouse jumps, and what is hard must not.
+/// How fast a tool is led, in its size a second: a mouse jumps, and what is hard must not.
 const TOOL_SPEED: f64 = 4.0;
+/// Time in which a tool on its spring follows the hand [s].
+const FOLLOWING: f64 = 0.01;
+/// By which the most that a hand gives is the weight of bodies [m/s²].
+const WEIGHT: f64 = 9.81;
+/// Part of its radius by which a tool sinks in when it is pressed with that.
+const SINKING: f64 = 0.1;
+/// Between a tool and bodies: of what is smooth, and not wet.
+const FRICTION: f64 = 0.3;
 /// Share of the stable step's stiffness that a hand may take in an explicit system.
 const EXPLICIT_SHARE: f64 = 0.1;
 
@@ -61,28 +70,97 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
     Grip::on(rows, &world.rows(body.system).positions, stiffness, damping)
 }
 
-/// Stiffness of a tool at each of the points of some bodies that it may meet: a twentieth of them, pressed, bear the
-/// bodies as firmly as a hand of ten times the strength; in an explicit system, as much as its step bears [N/m].
-pub fn tool_stiffness<'a>(
-    world: &World,
-    bodies: impl Iterator<Item = &'a BodyInfo>,
-    point_count: usize,
-    strength: f64,
-) -> f64 {
-    let (mut mass, mut bearable) = (0.0, f64::INFINITY);
-    for body in bodies {
-        let system = &world.model().systems[body.system];
-        let rows = mass_rows(body);
-        let masses = rows.iter().map(|row| system.mass.diagonal[*row as usize]);
-        mass += masses.clone().sum::<f64>();
-        if !matches!(system.stepper.stability(), Stability::Unconditional) {
-            let timestep = system.stepper.interval(world.model().timestep(body.system));
-            let lightest = masses.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
-            bearable = f64::min(bearable, EXPLICIT_SHARE * lightest / (timestep * timestep));
-        }
+/// What a tool may meet: points, and the triangles between them.
+#[derive(Debug, Default)]
+pub struct TouchedSurface {
+    pub rows: Vec<u32>,
+    /// At rest [m].
+    places: Vec<Vec3>,
+    /// Corners among the rows.
+    triangles: Vec<[u32; 3]>,
+    /// Whether all of it is around something: what is thin is touched on both sides, of which triangles have one.
+    pub is_closed: bool,
+}
+
+impl TouchedSurface {
+    /// Of some bodies of one system.
+    pub fn of<'a>(bodies: impl Iterator<Item = (&'a BodyInfo, &'a Shown)>) -> Self {
+        let mut surface = Self { is_closed: true, ..Self::default() };
+        bodies.for_each(|(body, shown)| surface.add(body, shown));
+        surface
     }
-    let pressed = (point_count as f64 / 20.0).max(1.0);
-    (10.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
+
+    fn add(&mut self, body: &BodyInfo, shown: &Shown) {
+        let (first, before) = (body.rows.start as u32, self.rows.len() as u32);
+        let points = &shown.points[..shown.outer_count];
+        self.rows.extend(points.iter().map(|point| first + point));
+        self.places.extend(points.iter().map(|point| body.mesh.points[*point as usize]));
+        self.triangles.extend(shown.triangles.iter().map(|corners| corners.map(|corner| before + corner)));
+        self.is_closed &= has_inside(&body.mesh);
+    }
+
+    /// Of a triangle [m²].
+    fn mean_area(&self) -> f64 {
+        let area = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.places[corner as usize]);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(area).sum::<f64>() / self.triangles.len().max(1) as f64
+    }
+}
+
+/// The bodies of a system under a tool, as far as that says how firm it is.
+pub struct Touched {
+    /// [kg]
+    mass: f64,
+    /// The most at a point that the system's step bears [N/m].
+    bearable: f64,
+}
+
+impl Touched {
+    pub fn new<'a>(world: &World, bodies: impl Iterator<Item = &'a BodyInfo>) -> Self {
+        let (mut mass, mut bearable) = (0.0, f64::INFINITY);
+        for body in bodies {
+            let system = &world.model().systems[body.system];
+            let rows = mass_rows(body);
+            let masses = rows.iter().map(|row| system.mass.diagonal[*row as usize]);
+            mass += masses.clone().sum::<f64>();
+            if !matches!(system.stepper.stability(), Stability::Unconditional) {
+                let timestep = system.stepper.interval(world.model().timestep(body.system));
+                let lightest = masses.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
+                bearable = f64::min(bearable, EXPLICIT_SHARE * lightest / (timestep * timestep));
+            }
+        }
+        Self { mass, bearable }
+    }
+
+    /// Of a tool at each of so many points that it may meet: a twentieth of them, pressed, bear the bodies as firmly as a hand of ten
+    /// times the strength; in an explicit system, as much as its step bears [N/m].
+    pub fn stiffness_of_points(&self, point_count: usize, strength: f64) -> f64 {
+        let pressed = (point_count as f64 / 20.0).max(1.0);
+        (10.0 * strength * self.mass * FREQUENCY * FREQUENCY / pressed).min(self.bearable)
+    }
+
+    /// How a hand holds a tool of a size [m], and the stiffness of a triangle of mean area: its spring is that of a hand on whole bodies, it
+    /// gives no more than their weight, and as much as that presses the tool in by a part of its radius, as far as steps bear it.
+    pub fn held_tool(&self, surface: &TouchedSurface, size: f64, strength: f64) -> (f64, HeldTool) {
+        let spring = strength * self.mass * FREQUENCY * FREQUENCY;
+        let limit = strength * self.mass * WEIGHT;
+        let across = 0.25 * std::f64::consts::PI * size * size;
+        let pressed = (across / surface.mean_area()).max(1.0);
+        let stiffness = (limit / (pressed * SINKING * 0.5 * size)).min(self.bearable);
+        let held = HeldTool {
+            places: surface.places.clone(),
+            triangles: surface.triangles.clone(),
+            friction: FRICTION,
+            // critically damped
+            mass: spring * FOLLOWING * FOLLOWING,
+            spring,
+            damper: 2.0 * spring * FOLLOWING,
+            limit,
+        };
+        (stiffness, held)
+    }
 }
 
 /// Rows that have the mass of a body: points that frames carry have none of their own.
@@ -192,7 +270,11 @@ impl Hands {
             let leads_to = if holds == Holds::Body { goal } else { place };
             let seen = HandShown { page, hand, holds, held: place, place: leads_to, force: Vec3::ZERO };
             match holds {
-                Holds::Tool => Some(HandShown { force: pressed(held, world), ..seen }),
+                // one on a spring is not where it is led to
+                Holds::Tool => {
+                    let stands = tool_of(world, held).map_or(place, |tool| tool.tool);
+                    Some(HandShown { held: stands, force: pressed(held, world), ..seen })
+                }
                 Holds::Body => {
                     let hand: &Hand = self.force_of(world, page, hand)?.as_any().downcast_ref()?;
                     let rows = world.rows(*held.systems.first()?);
@@ -203,6 +285,12 @@ impl Hands {
         };
         self.held.iter().filter_map(shown).collect()
     }
+}
+
+/// How a tool on a spring stands; `None` of one that is where it is led to.
+fn tool_of(world: &World, held: &Holding) -> Option<InHand> {
+    let (force, at) = world.force_named(*held.systems.first()?, &hand_name(held.number))?;
+    force.in_hand(&at)
 }
 
 /// What a tool does to all bodies [N].

@@ -14,7 +14,7 @@ use souple_scene::{BodyInfo, Scene};
 use souple_table::Table;
 
 use super::Shown;
-use super::hands::{self, Hands};
+use super::hands::{self, Hands, TouchedSurface};
 use super::picture::Wanted;
 use crate::dropped::DroppedFile;
 use crate::fields::{ARROWS, FIELDS};
@@ -423,27 +423,38 @@ impl Stage {
         let Wish::Touch { hand, tool, size, place, direction, strength } = wish else { return Ok(()) };
         let entry = TOOLS.find(tool).map_err(|error| error.to_string())?;
         let values = (entry.build.values)(*size, *direction);
+        let system_count = self.session.world.model().systems.len();
+        let surfaces: Vec<TouchedSurface> = (0..system_count).map(|system| self.surface_of(system)).collect();
+        // one spring holds it: in several systems it would be in several places
+        let is_in_one = surfaces.iter().filter(|surface| !surface.rows.is_empty()).count() == 1;
         let mut tools = Vec::new();
-        for system in 0..self.session.world.model().systems.len() {
-            let mut rows = Vec::new();
-            let bodies = self.session.bodies.iter().zip(&self.shown);
-            for (body, shown) in bodies.filter(|(body, _)| body.system == system) {
-                let first = body.rows.start as u32;
-                rows.extend(shown.points[..shown.outer_count].iter().map(|point| first + point));
-            }
-            if rows.is_empty() {
+        for (system, surface) in surfaces.into_iter().enumerate() {
+            if surface.rows.is_empty() {
                 continue;
             }
             let bodies = self.session.bodies.iter().filter(|body| body.system == system);
-            let stiffness = hands::tool_stiffness(&self.session.world, bodies, rows.len(), *strength);
-            let (shape, values) = (entry.build.shape.to_owned(), values.clone());
-            tools.push((system, Tool { shape, values, place: *place, stiffness, rows }));
+            let touched = hands::Touched::new(&self.session.world, bodies);
+            let is_held = entry.build.is_rounded && is_in_one && surface.is_closed;
+            let (stiffness, held) = if is_held {
+                let (stiffness, held) = touched.held_tool(&surface, *size, *strength);
+                (stiffness, Some(held))
+            } else {
+                (touched.stiffness_of_points(surface.rows.len(), *strength), None)
+            };
+            let (shape, values, rows) = (entry.build.shape.to_owned(), values.clone(), surface.rows);
+            tools.push((system, Tool { shape, values, place: *place, stiffness, rows, held }));
         }
         let edits = self.hands.touch(page, *hand, *size, tools);
         self.take(page, *hand, edits)?;
         let shape = self.tool_shape(page, *hand);
         shape.into_iter().for_each(|message| hub.tell_all(&Outgoing::Binary(message.into())));
         Ok(())
+    }
+
+    /// What a tool may meet of the bodies of a system.
+    fn surface_of(&self, system: usize) -> TouchedSurface {
+        let bodies = self.session.bodies.iter().zip(&self.shown);
+        TouchedSurface::of(bodies.filter(|(body, _)| body.system == system))
     }
 
     /// Makes the edits by which a hand takes something; a hand whose edits are refused holds nothing.

@@ -160,6 +160,8 @@ pub struct Frame {
     pub hands: u32,
     /// Of the hands, those with a tool.
     pub tools: u32,
+    /// Where the first hand's tool or points are, where these are led to [m], and what it does to bodies [N].
+    pub first_hand: [[f32; 3]; 3],
     /// Of each body.
     pub point_counts: Vec<u32>,
     /// Mean height of the points of each body [m].
@@ -189,6 +191,10 @@ impl Frame {
         let mut frame = Self { number: u32_at(24), hands, ..Self::default() };
         frame.time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
         frame.tools = (0..hands).filter(|hand| u32_at(72 + 48 * *hand as usize + 8) == 1).count() as u32;
+        if hands > 0 {
+            let number = |k: usize| f32::from_le_bytes(bytes[84 + 4 * k..88 + 4 * k].try_into().unwrap());
+            frame.first_hand = [0, 3, 6].map(|first| [0, 1, 2].map(|k| number(first + k)));
+        }
         for _ in 0..u16::from_le_bytes([bytes[2], bytes[3]]) {
             let [points, fields, arrows, links, frames] = [0, 4, 8, 12, 16].map(|offset| u32_at(at + offset));
             at += 20;

@@ -353,3 +353,41 @@ fn tools_press() {
     page.document_where("status", |status| status["mode"] == "paused");
     world.assert_replayed();
 }
+
+/// A ball on a spring is led right through a block: the block stops it on its way, bears what the spring gives at most, and
+/// what they did is repeated from the recording (DEB-44, DEB-46).
+#[test]
+fn held_tools_do_not_pass() {
+    let world = World::of(BLOCK);
+    let mut page = Page::open(&world);
+    page.document("scene");
+    let start = page.frame().height[0];
+    page.wish(json!({
+        "do": "touch", "hand": 0, "tool": "ball", "size": 0.1, "place": [0.1, 0.16, 0.1], "direction": [0, 1, 0],
+        "strength": 1,
+    }));
+    let above = page.frame_where(|frame| frame.tools == 1).first_hand;
+    assert!((above[0][1] - 0.16).abs() < 1e-6 && above[2] == [0.0; 3], "{above:?}");
+    // its middle from above the block, whose upper side is at 100 mm, to below it
+    page.wish(json!({"do": "move", "hand": 0, "offset": [0, -0.3, 0]}));
+    let through = page.frame_where(|frame| frame.first_hand[1][1] < -0.139);
+    let pressed = page.frame_where(|frame| frame.time > through.time + 0.5);
+    let [stands, led, force] = pressed.first_hand;
+    assert!(stands[1] > 0.05 && led[1] < -0.139, "{:?}", pressed.first_hand);
+    assert!(pressed.height[0] < start - 1e-3);
+    // what the spring gives at most is the weight of 4 kg; the ball has come to rest under it
+    assert!((force[1] + 4.0 * 9.81).abs() < 0.05 * 4.0 * 9.81, "{force:?}");
+    // a second hand takes a tool and lets go, and the first is where it was
+    page.wish(json!({
+        "do": "touch", "hand": 1, "tool": "finger", "size": 0.1, "place": [0.5, 0.5, 0.5], "direction": [0, 1, 0],
+        "strength": 1,
+    }));
+    page.frame_where(|frame| frame.tools == 2);
+    page.wish(json!({"do": "release", "hand": 0}));
+    let released = page.frame_where(|frame| frame.tools == 1);
+    let risen = page.frame_where(|frame| frame.time > released.time + 0.5);
+    assert!(risen.height[0] > pressed.height[0] + 1e-3, "{} {}", risen.height[0], pressed.height[0]);
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+    world.assert_replayed();
+}

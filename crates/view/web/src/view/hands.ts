@@ -54,7 +54,8 @@ export class Hands {
       const held = new Vector3().fromArray(hand.held);
       const force = new Vector3().fromArray(hand.force);
       place.fromArray(hand.place);
-      // of a tool, which is where it is led to, the arrow tells the way it pushes
+      // of a tool the arrow tells the way it pushes, not where it is led to
+      if (hand.holds === "tool") place.copy(held);
       if (hand.holds === "tool" && force.length() > 0) place.addScaledVector(force, (TOOL_ARROW * this.size()) / force.length());
       this.point(shown, held);
       grip.visible = hand.holds === "body";

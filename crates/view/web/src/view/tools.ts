@@ -44,11 +44,11 @@ export class Tools {
 
   update(hands: HandShown[]): void {
     const present = new Set<string>();
-    for (const { page, hand, holds, place } of hands) {
+    for (const { page, hand, holds, held } of hands) {
       const shape = this.shapes.get(key(page, hand));
       if (!shape || holds !== "tool") continue;
       present.add(key(page, hand));
-      shape.mesh.position.fromArray(place);
+      shape.mesh.position.fromArray(held);
       shape.mesh.visible = true;
     }
     for (const [name, shape] of this.shapes) {
