@@ -427,7 +427,7 @@ pub trait Force: Send + Sync {
 
     /// Gives back what a scratch holds much of and the next evaluation makes anew with the same result, for who needs the room
     /// between steps.
-    fn give_back(&self, _scratch: &mut Scratch) {}
+    fn free_scratch(&self, _scratch: &mut Scratch) {}
 
     /// Bytes that a scratch of this force holds on the heap, for the memory report.
     fn scratch_bytes(&self, _scratch: &Scratch) -> usize {

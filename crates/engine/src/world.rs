@@ -366,11 +366,11 @@ impl World {
 
     /// Gives back what only steps work with and make anew, with the same result: the next State, lists of neighbours. For who needs
     /// the room between steps, to write or to draw what is there.
-    pub fn give_back(&mut self) {
+    pub fn free_workspace(&mut self) {
         self.workspace.next = State::default();
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
             for (force, scratch) in system.forces.iter().zip(&mut ws.scratches) {
-                force.give_back(scratch);
+                force.free_scratch(scratch);
             }
         }
     }

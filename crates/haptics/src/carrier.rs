@@ -8,7 +8,7 @@ use std::sync::Arc;
 use souple_engine::{Editable, InHand, Motion, ParameterError};
 use souple_math::{Mat3, Vec3};
 use souple_models::contact::{Carrier, Pressed};
-use souple_models::loads::Pose;
+use souple_models::loads::{Pose, RigidMotion};
 
 use crate::TICK;
 use crate::arm::{Arm, ArmState};
@@ -145,9 +145,9 @@ impl HandCarrier {
         if let Some(place) = self.led {
             let period = self.rest.period;
             let into = state.arm.time / period;
-            let left = (into.floor() + 1.0 - into).max(ROUNDING) * period;
-            // at the very end of a period by rounding, the next one is meant
-            let left = if left < ROUNDING * period * 2.0 { period } else { left };
+            let left = (into.floor() + 1.0 - into) * period;
+            // times are sums: less than half a step before its end the next period is meant
+            let left = if left < 0.5 * h { period } else { left };
             let velocity = (place - state.arm.hand.place) / left.max(h);
             state.arm.hand = Moving { place: state.arm.hand.place + velocity * h, velocity };
             state.arm.time += h;
@@ -166,9 +166,10 @@ impl HandCarrier {
         let Moving { place, velocity } = state.tool;
         let pull = match self.rest.weight {
             Weight::Felt => coupling.pull(state.arm.hand, state.tool),
-            // sped up as the device is, and drawn to where that will be when the tool has moved: the spring does neither
+            // sped up as the device is, and drawn to where that will be when the tool has moved, as fast as it will be: the spring does neither
             Weight::Unfelt => {
                 let Moving { place, velocity } = state.arm.hand;
+                let velocity = velocity + state.acceleration * h;
                 let ahead = Moving { place: place + velocity * h, velocity };
                 coupling.pull(ahead, state.tool) + state.acceleration * self.rest.mass
             }
@@ -299,7 +300,10 @@ impl Carrier for HandCarrier {
     }
 
     fn planned(&self) -> Option<Arc<dyn Motion>> {
-        self.arm.as_ref().map(|arm| arm.intent.clone())
+        match (&self.arm, self.led) {
+            (Some(arm), _) => Some(arm.intent.clone()),
+            (None, led) => Some(Arc::new(RigidMotion::at(led?))),
+        }
     }
 
     fn in_hand(&self, memory: &[f64]) -> InHand {
@@ -343,19 +347,20 @@ mod tests {
     const SWING: f64 = 0.03;
     const OMEGA: f64 = std::f64::consts::TAU / 0.6;
 
-    /// The most that a hand feels which swings a tool of 50 g in the air for two seconds, from rest [N].
-    fn felt_in_the_air(weight: Weight) -> f64 {
+    /// The most that a hand feels which swings a tool in the air for two seconds, from rest, and in the second of these [N].
+    fn felt_in_the_air(mass: f64, weight: Weight) -> [f64; 2] {
         let port = Port { coupling: Coupling::DEFAULT, passive: false };
-        let rest = Rest { port, mass: 0.05, period: PERIOD, is_held: false, weight };
+        let rest = Rest { port, mass, period: PERIOD, is_held: false, weight };
         let mut carrier = HandCarrier::new(rest, None).starting_at(Vec3::Y);
         let mut memory = vec![0.0; carrier.memory_len()];
         carrier.initial_memory(&mut memory);
-        let mut most = 0.0_f64;
+        let mut most = [0.0_f64; 2];
         for period in 1..=2000 {
             let end = f64::from(period) * PERIOD;
             carrier.lead(Vec3::Y + Vec3::X * (SWING * (1.0 - (OMEGA * end).cos())));
             carrier.advance(&|_| Pressed::default(), end - PERIOD, PERIOD, &mut memory);
-            most = most.max(carrier.in_hand(&memory).force.length());
+            let force = carrier.in_hand(&memory).force.length();
+            most = [most[0].max(force), if period > 1000 { most[1].max(force) } else { 0.0 }];
         }
         let [tool, device] = [carrier.in_hand(&memory).tool, carrier.in_hand(&memory).device];
         assert!((tool - device).length() < 1e-3, "{tool:?} {device:?}");
@@ -367,11 +372,42 @@ mod tests {
     #[test]
     fn masses_may_be_unfelt() {
         let acceleration = SWING * OMEGA * OMEGA;
-        let felt = felt_in_the_air(Weight::Felt);
-        assert!(felt >= 0.05 * acceleration && felt < 2.0 * 0.05 * acceleration, "{felt}");
-        let impedance = (Coupling::DEFAULT.stiffness * 0.05).sqrt() + Coupling::DEFAULT.damping;
-        let unfelt = felt_in_the_air(Weight::Unfelt);
-        assert!(unfelt <= impedance * acceleration * TICK, "{unfelt}");
+        for mass in [0.05, 0.005] {
+            let [felt, _] = felt_in_the_air(mass, Weight::Felt);
+            assert!(felt >= mass * acceleration && felt < 2.0 * mass * acceleration, "{mass}: {felt}");
+            let impedance = (Coupling::DEFAULT.stiffness * mass).sqrt() + Coupling::DEFAULT.damping;
+            let [unfelt, later] = felt_in_the_air(mass, Weight::Unfelt);
+            assert!(unfelt <= impedance * acceleration * TICK, "{mass}: {unfelt}");
+            // then what the acceleration gains in the tick for which it is taken, of the mass and of what the damper takes for one
+            let taken = mass + Coupling::DEFAULT.damping * TICK;
+            assert!(later <= 2.0 * taken * acceleration * OMEGA * TICK, "{mass}: {later}");
+        }
+    }
+
+    /// Led evenly the device moves evenly, however long it has been: its time is a sum, and the beginnings of periods are not to be
+    /// missed.
+    #[test]
+    fn devices_are_led_evenly() {
+        const PERIOD: f64 = 1e-2;
+        const SPEED: f64 = 0.4;
+        let port = Port { coupling: Coupling::DEFAULT, passive: true };
+        let rest = Rest { port, mass: 0.05, period: PERIOD, is_held: false, weight: Weight::Felt };
+        // as steps of a world of one rate, and in ticks of bodies with levels
+        for steps in [1, 256] {
+            let mut carrier = HandCarrier::new(rest, None).starting_at(Vec3::ZERO);
+            let mut memory = vec![0.0; carrier.memory_len()];
+            carrier.initial_memory(&mut memory);
+            for period in 1..=12_000 {
+                carrier.lead(Vec3::X * (SPEED * PERIOD * f64::from(period)));
+                for step in 0..steps {
+                    let told = PERIOD * (f64::from(period - 1) + f64::from(step) / f64::from(steps));
+                    carrier.advance(&|_| Pressed::default(), told, PERIOD / f64::from(steps), &mut memory);
+                    let velocity = HandState::read(&memory).arm.hand.velocity.x;
+                    // places of tens of metres, their rounding over a step
+                    assert!((velocity - SPEED).abs() < 1e-6 * SPEED, "{steps}, period {period}: {velocity}");
+                }
+            }
+        }
     }
 
     /// A device that leaps draws its tool with no more than it gives, whether the mass is felt or not.

@@ -155,13 +155,13 @@ fn snapshots_remember_pairs() {
 
 /// A world that gives back what its steps work with holds less, and goes on to the same bits.
 #[test]
-fn giving_back_changes_no_bit() {
+fn freeing_workspaces_changes_no_bit() {
     for (name, friction) in CASES {
         let [mut kept, mut given] = [(); 2].map(|()| world(name, friction, [0..1200, 0..1200], Listing::Own));
         for _ in 0..5 {
             [&mut kept, &mut given].into_iter().for_each(|world| step(world, 4));
             let before = given.bytes();
-            given.give_back();
+            given.free_workspace();
             // half of all State at least, which there was twice
             let held = before - given.bytes();
             assert!(held > given.state().bytes() / 2, "{name}: {held} of {before} bytes");

@@ -182,7 +182,7 @@ fn nothing_is_lost_between_levels() {
         let count = body.force.masses().len();
         let mut impulses = vec![Vec3::ZERO; body.rows.positions.len()];
         impulses[..count].fill(Vec3::X);
-        Levels::give_back(&body.force, Followers::All, &body.scratch, &mut impulses);
+        body.force.give_back(Followers::All, &body.scratch, &mut impulses);
         let arrived: f64 = impulses.iter().map(|impulse| impulse.x).sum();
         assert!((arrived / count as f64 - 1.0).abs() < 1e-12, "{pattern}: {arrived}");
         let active = body.force.active(&body.scratch).to_vec();

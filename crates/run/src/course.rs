@@ -199,7 +199,7 @@ impl Course {
         };
         let Some(folder) = folder else { return report };
         // energies were asked for with lists of neighbours, and pictures are large
-        session.give_back();
+        session.free_workspace();
         // numbers first: should the program be ended while it draws, they are there
         let written = [
             report::write_report(folder, &report),

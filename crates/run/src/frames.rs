@@ -103,7 +103,7 @@ impl Frames {
 
     fn write_now(&mut self, folder: &mut OutputFolder, session: &mut Session) -> Result<(), OutputError> {
         // beside what is written of a million balls there is no room for the work of steps
-        session.give_back();
+        session.free_workspace();
         let moment = Moment::of_session(session);
         for (series, body) in self.bodies.iter_mut().zip(&moment.bodies) {
             let output = Output {

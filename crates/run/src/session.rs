@@ -165,9 +165,9 @@ impl Session {
     }
 
     /// Gives back what the world holds for its steps alone.
-    pub(crate) fn give_back(&mut self) {
+    pub(crate) fn free_workspace(&mut self) {
         self.held = self.held.max(self.world.bytes());
-        self.world.give_back();
+        self.world.free_workspace();
     }
 
     /// Looks at its energy, where that is watched, and warns once where it grows.

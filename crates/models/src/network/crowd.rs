@@ -598,7 +598,7 @@ impl Force for Crowd {
         )
     }
 
-    fn give_back(&self, scratch: &mut Scratch) {
+    fn free_scratch(&self, scratch: &mut Scratch) {
         *scratch = self.new_scratch();
     }
 

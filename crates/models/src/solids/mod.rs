@@ -167,8 +167,8 @@ impl PartialEq for Class<'_> {
     }
 }
 
-/// Blocks of lanes that a chunk has at least where its cells may come to have two laws: those of either law fill their last block in
-/// part only.
+/// Blocks of lanes that a chunk has at least where its cells may come to have two laws, and store the samples of their shape once: those
+/// of either law fill their last block in part only.
 const MIXED_BLOCKS: usize = 16;
 
 /// Which kernels cells without a stiffness of their own have.
@@ -308,11 +308,12 @@ impl<'a> Sorting for ByLaw<'a> {
     }
 
     fn alike(&self, class: &Class<'a>) -> Alike {
-        let least_blocks = match self.kernels {
-            Kernels::FastestAlike => MIXED_BLOCKS,
-            Kernels::Fastest | Kernels::Samples => Alike::IN_KIND.least_blocks,
-        };
-        Alike { has_one_shape: class.shape.is_some(), least_blocks }
+        let has_one_shape = class.shape.is_some();
+        let is_mixed = has_one_shape && self.kernels == Kernels::FastestAlike;
+        Alike {
+            has_one_shape,
+            least_blocks: if is_mixed { MIXED_BLOCKS } else { Alike::IN_KIND.least_blocks },
+        }
     }
 
     fn blocks_at_once(&self, kernel: &Box<dyn Kernel>) -> usize {

@@ -434,7 +434,8 @@ impl Stage {
             }
             let bodies = self.session.bodies.iter().filter(|body| body.system == system);
             let touched = hands::Touched::new(&self.session.world, bodies);
-            let is_held = entry.build.is_rounded && is_in_one && surface.is_closed;
+            // a hand without strength has no spring
+            let is_held = entry.build.is_rounded && is_in_one && surface.is_closed && *strength > 0.0;
             let (stiffness, held) = if is_held {
                 let (stiffness, held) = touched.held_tool(&surface, *size, *strength);
                 (stiffness, Some(held))

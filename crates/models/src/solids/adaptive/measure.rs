@@ -1,4 +1,4 @@
-//! Criteria of all cells of a chunk at once, in lanes: the same numbers as of [`super::criteria`] cell by cell.
+//! Criteria of all cells of a chunk at once, in lanes: to rounding the numbers of [`super::criteria`] cell by cell.
 
 use pulp::{Arch, Simd, WithSimd};
 use souple_math::{Lanes, Padded, Real, Vec3};

@@ -58,13 +58,13 @@ pub fn formulated(
     build(&SolidDescription { materials: &materials, ..description.clone() }, values)
 }
 
-/// Whether a formulation runs a text as it is, also where that is a law of the table.
+/// Whether a formulation takes a text as it is, also where that is a law of the table.
 pub fn keeps_texts(formulation: &Entry<BuildFormulation>) -> bool {
     KEEPING_TEXTS.contains(&formulation.name)
 }
 
-/// Formulations that compare how a law is run: what they are given is what they run.
-const KEEPING_TEXTS: [&str; 2] = ["samples", "grouped_constants"];
+/// Formulations that take any law, and run it as it is given or, `mass_spring`, read its stiffness alone.
+const KEEPING_TEXTS: [&str; 3] = ["samples", "grouped_constants", "mass_spring"];
 
 /// All formulations.
 pub static FORMULATIONS: Table<BuildFormulation> = Table {
