@@ -113,7 +113,7 @@ impl TouchedSurface {
 pub struct Touched {
     /// [kg]
     mass: f64,
-    /// The most at a point that the system's step bears [N/m].
+    /// The most at a point that the system's step bears [N/m]; infinite of steps that are solved for.
     bearable: f64,
 }
 
@@ -132,6 +132,11 @@ impl Touched {
             }
         }
         Self { mass, bearable }
+    }
+
+    /// Whether its steps are solved for: they bear any stiffness.
+    pub fn is_implicit(&self) -> bool {
+        self.bearable.is_infinite()
     }
 
     /// Of a tool at each of so many points that it may meet: a twentieth of them, pressed, bear the bodies as firmly as a hand of ten

@@ -434,8 +434,12 @@ impl Stage {
             }
             let bodies = self.session.bodies.iter().filter(|body| body.system == system);
             let touched = hands::Touched::new(&self.session.world, bodies);
-            // a hand without strength has no spring
-            let is_held = entry.build.is_rounded && is_in_one && surface.is_closed && *strength > 0.0;
+            // a hand without strength has no spring, and steps that are solved for seek long where triangles come and go
+            let is_held = entry.build.is_rounded
+                && is_in_one
+                && surface.is_closed
+                && *strength > 0.0
+                && !touched.is_implicit();
             let (stiffness, held) = if is_held {
                 let (stiffness, held) = touched.held_tool(&surface, *size, *strength);
                 (stiffness, Some(held))
