@@ -97,7 +97,7 @@ const BLOCK: &str = r#"
 /// The same by explicit steps, of which a tool on a spring takes part.
 fn explicit_block() -> String {
     let system =
-        "[systems.main]\n    stepper = \"symplectic_euler\"\n    timestep = \"1 ms\"\n    [bodies.block]";
+        "[systems.main]\n    stepper = \"symplectic_euler\"\n    steps_per_period = 10\n    [bodies.block]";
     BLOCK.replacen("[bodies.block]", system, 1)
 }
 
