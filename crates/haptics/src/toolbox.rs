@@ -1,7 +1,7 @@
 //! Shapes as tools in a hand that a person leads from place to place: with a mouse, say.
 //!
-//! A tool of rounded parts is held as those of devices are: it hangs on a spring and a damper, gives way to what it meets, and meets
-//! triangles. Any other is where it is led to, and meets points.
+//! A tool that is told how it is held is one as those of devices are: it hangs on a spring and a damper, gives way to what it meets, and
+//! meets triangles. Any other is where it is led to, and meets points.
 
 use souple_engine::{Force, HeldTool, Tool, Toolbox};
 use souple_math::Vec3;
