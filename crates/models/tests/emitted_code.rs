@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Command;
+use std::time::Instant;
 
 use souple_formal::element::{Cut, Derived, ElementData};
 use souple_formal::emit::{ElementCode, maxima, maxima_name};
@@ -332,6 +333,37 @@ fn rust_computes_what_was_derived() {
             assert!(off <= 1e-12, "{}: {off:e}", case.name);
         }
     }
+}
+
+/// EXP-4: what is emitted is compiled as it is, without a cut by hand: for a triangle under Hooke's law as soon as an empty file, for a
+/// box of eight points under St. Venant-Kirchhoff's, the largest that the source lists, within its ten minutes.
+#[test]
+fn emitted_code_is_compiled_soon() {
+    let folder = folder("compiled_soon");
+    let compiler = || std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let seconds = |name: &str, code: &str| {
+        let source = folder.join(format!("{name}.rs"));
+        std::fs::write(&source, code).unwrap();
+        let clock = Instant::now();
+        let flags = ["--edition", "2024", "--crate-type", "lib", "-O", "-A", "dead_code", "--out-dir"];
+        output(Command::new(compiler()).args(flags).arg(&folder).arg(&source));
+        clock.elapsed().as_secs_f64()
+    };
+    let code = |law: &str, kind: ElementKind| {
+        let law = WRITTEN_LAWS.iter().find(|known| known.name == law).unwrap();
+        let compiled = EnergyLaw::compile(&law.text().unwrap()).unwrap();
+        let element = element_data(kind, &kind.rules()[0], MapKind::General).unwrap();
+        element.derive(&compiled, Cut::NONE).unwrap().emit(ElementCode::Rust).text
+    };
+    let small = code("linear", ElementKind::Tri3);
+    // the machine is shared: the soonest of three, and a second of starting the compiler
+    let soonest = |name: &str, code: &str| (0..3).map(|_| seconds(name, code)).fold(f64::INFINITY, f64::min);
+    let (empty, triangle) = (soonest("empty", "pub fn nothing() {}\n"), soonest("triangle", &small));
+    assert!(triangle < 2.0 * empty + 1.0, "{triangle} s, an empty file {empty} s");
+    let large = code("st_venant_kirchhoff", ElementKind::Hex8);
+    assert!(large.len() > 20 * small.len(), "{} and {} bytes", large.len(), small.len());
+    let took = seconds("box", &large);
+    assert!(took < 600.0, "{took} s");
 }
 
 #[test]
