@@ -53,8 +53,8 @@ fn adaptive_section(
     let of_cell = vec![0; mesh.cell_count()];
     let laws = laws();
     let adaptation = Adaptation { thresholds: thresholds.to_vec(), back };
-    let description = SolidDescription { section, ..describe(mesh, &laws, &of_cell) };
-    AdaptiveForce::new(&description, laws.clone(), adaptation).unwrap()
+    let description = SolidDescription { section, ..describe(mesh, &laws[..1], &of_cell) };
+    AdaptiveForce::new(&description, &laws[1..], adaptation).unwrap()
 }
 
 fn sheet(element: &str) -> Mesh {
@@ -121,6 +121,46 @@ fn answers(force: &dyn Force, x: &[Vec3], memory: &[f64]) -> (f64, [Vec<Vec3>; 3
     force.add_blocks(&at, weights, &mut scratch, &mut matrix);
     matrix.apply(&delta, &mut out[2]);
     (force.energy(&at, &mut scratch).stored, out)
+}
+
+/// Parts of several materials, each with a law of its own that takes over: as a body with these materials, whichever cells have which
+/// law, and cells of linear laws by the stiffness of their shape.
+#[test]
+fn materials_adapt_each_to_its_own() {
+    let of = |law: &str, modulus: f64| common::material_of(materials::TABLE.find(law).unwrap(), modulus, 0.3);
+    let firsts = [of("linear", 1e7), of("linear", 2e7), of("neo_hookean", 1e7)];
+    let seconds = [of("neo_hookean", 1e7), of("st_venant_kirchhoff", 2e7), of("linear", 3e7)];
+    let all: Vec<Material> = firsts.iter().chain(&seconds).cloned().collect();
+    for element in ["tet4", "hex8", "mixed"] {
+        let mesh = bar(element);
+        let (x, count) = (bent(&mesh), mesh.cell_count());
+        let part: Vec<u16> = (0..count).map(|cell| (cell * 3 / count) as u16).collect();
+        let adaptation = Adaptation { thresholds: vec![(Criterion::Length, 0.1)], back: 0.5 };
+        let force = AdaptiveForce::new(&describe(&mesh, &firsts, &part), &seconds, adaptation).unwrap();
+        for is_second in [|_| false, |_| true, |cell: usize| cell * 7 % 3 == 0] {
+            let of_cell: Vec<u16> =
+                part.iter().enumerate().map(|(cell, part)| part + 3 * u16::from(is_second(cell))).collect();
+            let mut memory: Vec<f64> = (0..count).map(|cell| f64::from(u8::from(is_second(cell)))).collect();
+            memory.extend([0.0, 0.0]);
+            let fixed = SolidForce::new(&describe(&mesh, &all, &of_cell)).unwrap();
+            let (energy, expected) = answers(&fixed, &x, &[]);
+            let (found_energy, found) = answers(&force, &x, &memory);
+            assert!(
+                (found_energy - energy).abs() <= 1e-12 * energy,
+                "{element}: {found_energy} for {energy}"
+            );
+            for (found, expected) in found.iter().zip(&expected) {
+                let largest = expected.iter().map(|f| f.length()).fold(0.0, f64::max);
+                let off = found.iter().zip(expected).map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max);
+                assert!(off <= 1e-12 * largest, "{element}: {off} of {largest}");
+            }
+            // what a switch of a cell takes is the difference of its own two laws
+            let before = answers(&force, &x, &memory).0;
+            force.end_step(&x, &mut memory);
+            let after = answers(&force, &x, &memory).0;
+            assert!((before - after - memory[count]).abs() <= 1e-12 * before, "{element}");
+        }
+    }
 }
 
 /// Whatever cells have which law, forces, energies and tangents are those of a body with these materials.

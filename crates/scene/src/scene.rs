@@ -97,8 +97,8 @@ pub struct LawsInfo {
     pub names: Vec<String>,
     /// Of each cell its number among the names.
     pub of_cell: Vec<u16>,
-    /// That of cells which exceed a criterion.
-    pub second: Option<String>,
+    /// Of a body that adapts: what takes over in cells which exceed a criterion, by the number of their name.
+    pub seconds: Vec<String>,
     /// Names whose laws are texts that run as laws of the table, each with the law.
     texts_of_table: Vec<(String, &'static str)>,
 }
@@ -110,19 +110,31 @@ impl LawsInfo {
         let whole = spec.regions.iter().filter(|part| part.region.is_some());
         let parts =
             whole.filter_map(|part| Some(format!("{} ({})", part.material.as_ref()?.entry.name, part.name)));
-        let second = spec.adapt.as_ref().and_then(|adapt| adapt.material.as_ref());
         let names: Vec<String> = main.chain(parts).collect();
+        let of_body = spec.adapt.as_ref().and_then(|adapt| adapt.material.as_ref());
+        let with_law = spec.regions.iter().filter(|part| part.region.is_some() && part.material.is_some());
+        let seconds: Vec<_> = of_body
+            .map(|of_body| {
+                let of_parts = with_law.map(|part| part.adapts_to.as_ref().unwrap_or(of_body));
+                std::iter::once(of_body).chain(of_parts).collect()
+            })
+            .unwrap_or_default();
         let BodyMaterials { all, of_cell } = materials;
         let keeps_texts = spec.levels.is_some()
             || spec.frames.is_some()
             || spec.formulation.as_ref().is_some_and(|formulation| keeps_texts(formulation.entry));
         let known = |name: &str, material: &Material| Some((name.to_owned(), material.text_runs_as()?));
-        let of_second = second.and_then(|law| {
-            known(&format!("{} (adapt)", law.entry.name), &(law.entry.build)(&law.values).ok()?)
+        let of_seconds = seconds.iter().zip(&names).filter_map(|(law, name)| {
+            let name = match name.split_once(' ') {
+                Some((_, part)) => format!("{} {part} (adapt)", law.entry.name),
+                None => format!("{} (adapt)", law.entry.name),
+            };
+            known(&name, &(law.entry.build)(&law.values).ok()?)
         });
         let of_cells = names.iter().zip(&all).filter_map(|(name, material)| known(name, material));
-        let texts_of_table = if keeps_texts { Vec::new() } else { of_cells.chain(of_second).collect() };
-        Self { names, of_cell, second: second.map(|law| law.entry.name.to_owned()), texts_of_table }
+        let texts_of_table = if keeps_texts { Vec::new() } else { of_cells.chain(of_seconds).collect() };
+        let seconds = seconds.iter().map(|law| law.entry.name.to_owned()).collect();
+        Self { names, of_cell, seconds, texts_of_table }
     }
 
     /// The names whose laws are texts that run as laws of the table, each with that law: `"hyperelastic (adapt)"` is the second of

@@ -62,7 +62,7 @@ fn spread(count: usize) -> impl Iterator<Item = Colour> {
 /// Each once, whichever bodies have it.
 fn names_of_laws(session: &Session) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
-    for name in session.bodies.iter().flat_map(|body| body.laws.names.iter().chain(&body.laws.second)) {
+    for name in session.bodies.iter().flat_map(|body| body.laws.names.iter().chain(&body.laws.seconds)) {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }
@@ -73,10 +73,15 @@ fn names_of_laws(session: &Session) -> Vec<&str> {
 fn laws_of_cells(session: &Session, body: &BodyInfo) -> Option<Vec<usize>> {
     let all = names_of_laws(session);
     let number = |name: &String| all.iter().position(|known| known == name);
-    let first: Vec<usize> = body.laws.names.iter().filter_map(number).collect();
-    let cells = body.laws.of_cell.iter().map(|law| first.get(usize::from(*law)).copied());
-    let Some(second) = body.laws.second.as_ref().and_then(number) else { return cells.collect() };
+    let [firsts, seconds] = [&body.laws.names, &body.laws.seconds]
+        .map(|names| names.iter().filter_map(number).collect::<Vec<usize>>());
+    // numbers beyond the names are of fields of the body's own law
+    let of = |laws: &[usize], law: u16| laws.get(usize::from(law)).or(laws.first()).copied();
+    let cells = body.laws.of_cell.iter();
+    if seconds.is_empty() {
+        return cells.map(|law| of(&firsts, *law)).collect();
+    }
     let (solid, at) = session.world.force_named(body.system, &body.force)?;
     let has_second = |cell: usize| solid.adapted(cell, &at).is_some_and(|adapted| adapted.law > 0.0);
-    cells.enumerate().map(|(cell, law)| if has_second(cell) { Some(second) } else { law }).collect()
+    cells.enumerate().map(|(cell, law)| of(if has_second(cell) { &seconds } else { &firsts }, *law)).collect()
 }

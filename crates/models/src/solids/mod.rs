@@ -159,11 +159,13 @@ struct Class<'a> {
     stiffness: Option<Arc<Stiffness>>,
     /// How the rest shape is mapped, where a derived kernel reads it.
     map: MapKind,
+    /// The material, where cells are sorted alike under any law: those of two may have one law now and two then.
+    material: Option<u16>,
 }
 
 impl PartialEq for Class<'_> {
     fn eq(&self, other: &Self) -> bool {
-        (self.law, self.shape, self.map) == (other.law, other.shape, other.map)
+        (self.law, self.shape, self.map, self.material) == (other.law, other.shape, other.map, other.material)
     }
 }
 
@@ -252,7 +254,8 @@ impl<'a> ByLaw<'a> {
             } else {
                 None
             };
-            sorting.classes.push(Class { law, shape, stiffness, map });
+            let material = (kernels == Kernels::FastestAlike).then_some(*material);
+            sorting.classes.push(Class { law, shape, stiffness, map, material });
         }
         Ok(sorting)
     }

@@ -8,7 +8,7 @@ use souple_math::{Mat3, Vec3};
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, LoadError, MassDamping};
-use souple_models::materials::Material;
+use souple_models::materials::{self, Material};
 use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
@@ -24,6 +24,7 @@ use super::{
     tissue,
 };
 use crate::diagnostic::{Code, Site};
+use crate::reader::Chosen;
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
 
@@ -288,11 +289,10 @@ fn add_solid(
     description: SolidDescription,
     forces: &mut Vec<Box<dyn Force>>,
 ) -> Result<(), FormulationError> {
-    let elastic: Box<dyn Force> = match (&body.formulation, adapted(body)) {
+    let elastic: Box<dyn Force> = match (&body.formulation, adapted(body, description.materials.len())) {
         (Some(chosen), _) => formulated(chosen.entry.build, &description, &chosen.values)?,
-        (None, Some((second, adaptation))) => {
-            let laws = [description.materials[0].clone(), second];
-            Box::new(AdaptiveForce::new(&description, laws, adaptation)?)
+        (None, Some((seconds, adaptation))) => {
+            Box::new(AdaptiveForce::new(&description, &seconds, adaptation)?)
         }
         (None, None) => Box::new(SolidForce::new(&description)?),
     };
@@ -315,12 +315,20 @@ fn add_solid(
     Ok(())
 }
 
-/// The law that takes over in a body that adapts, and when.
-fn adapted(body: &Body) -> Option<(Material, Adaptation)> {
+/// The laws that take over in a body that adapts, of each of its `count` materials as [`materials_of`] orders them, and when.
+fn adapted(body: &Body, count: usize) -> Option<(Vec<Material>, Adaptation)> {
     let adapt = body.adapt.as_ref()?;
-    let chosen = adapt.material.as_ref()?;
     // tried when the scene was read
-    Some(((chosen.entry.build)(&chosen.values).ok()?, adapt.adaptation.clone()))
+    let made = |chosen: &Chosen<materials::Build>| (chosen.entry.build)(&chosen.values).ok();
+    let of_body = made(adapt.material.as_ref()?)?;
+    let mut seconds = vec![of_body; count];
+    let regions = body.regions.iter().filter(|part| part.region.is_some() && part.material.is_some());
+    for (second, part) in seconds[1..].iter_mut().zip(regions) {
+        if let Some(chosen) = &part.adapts_to {
+            *second = made(chosen)?;
+        }
+    }
+    Some((seconds, adapt.adaptation.clone()))
 }
 
 /// Reports what a body cannot have together.
@@ -356,16 +364,18 @@ fn check_together(draft: &Draft, body: &Body) {
         ("octree", body.octree.is_some()),
         // edges have no area and no faces
         ("section", body.section().dimension() == 1),
-        ("regions", !body.regions.is_empty()),
         ("formulation", body.formulation.is_some()),
     ];
     for (other, _) in others.into_iter().filter(|(_, is_there)| *is_there) {
         let message = format!("body `{}` has `{other}`, and its elements cannot adapt besides", body.name);
-        report(
-            &adapt.site,
-            message,
-            "`adapt` in a body of volumes or of surface elements, with one material",
-        );
+        let expected = match other {
+            "formulation" => {
+                "no `formulation`: elements that adapt are evaluated sample by sample, or by the stiffness that cells \
+                              of one shape share"
+            }
+            _ => "`adapt` in a body of volumes or of surface elements",
+        };
+        report(&adapt.site, message, expected);
     }
 }
 

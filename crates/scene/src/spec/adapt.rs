@@ -60,6 +60,6 @@ impl AdaptSpec {
             reader.log().add(Code::MissingKey, &site, message, expected);
         }
         let adaptation = Adaptation { thresholds, back: reader.number("back") };
-        Self { material: read_material(reader), adaptation, site }
+        Self { material: read_material(reader, "material"), adaptation, site }
     }
 }

@@ -87,6 +87,11 @@ pub(crate) static BODY_REGION: Keys = Keys::new(
     &[
         Key::new("region", Shape::Region, "cells of which all nodes, or the centre, are inside").required(),
         Key::new("material", Shape::Entry(MATERIAL), "the material there").required(),
+        Key::new(
+            "adapts_to",
+            Shape::Entry(MATERIAL),
+            "the law that takes over there where the body has `adapt`; its `material` where left out",
+        ),
     ],
 );
 
@@ -294,6 +299,7 @@ pub struct BodyRegion {
     pub name: String,
     pub region: Option<Region>,
     pub material: Option<Chosen<materials::Build>>,
+    pub adapts_to: Option<Chosen<materials::Build>>,
 }
 
 /// How mass is spread over points.
@@ -398,9 +404,10 @@ impl Body {
         let region = |(name, part): (String, Reader)| BodyRegion {
             name,
             region: Region::read(&part, "region"),
-            material: read_material(&part),
+            material: read_material(&part, "material"),
+            adapts_to: part.has("adapts_to").then(|| read_material(&part, "adapts_to")).flatten(),
         };
-        let material = read_material(reader);
+        let material = read_material(reader, "material");
         // what is no number of the material is told where it is spread over cells
         let unit_of = |parameter: &str| {
             let mut of_material = material.iter().flat_map(|chosen| chosen.entry.parameters);
@@ -472,12 +479,11 @@ fn law_as_text(name: &str) -> Option<String> {
 
 /// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their
 /// range may make no body together.
-pub(super) fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
-    let chosen = reader.entry("material", &materials::TABLE)?;
+pub(super) fn read_material(reader: &Reader, key: &str) -> Option<Chosen<materials::Build>> {
+    let chosen = reader.entry(key, &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
     for error in error.all() {
-        let (mut site, mut node) =
-            (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));
+        let (mut site, mut node) = (chosen.site.clone(), reader.reading(key).map(|reading| reading.node));
         for key in error.path() {
             site.path = format!("{}.{key}", site.path);
             node = node.and_then(|node| node.as_table()?.get(key));

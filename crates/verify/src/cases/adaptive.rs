@@ -178,6 +178,20 @@ pub(super) const CASES: &[Case] = &[
         ..BAR
     },
     Case {
+        id: "adapted_parts",
+        capabilities: &["FAU-65", "DEB-53"],
+        what: "tip of a bar of two materials, each with a law of its own that takes over, where every element soon has that",
+        settings: &[
+            r#"bodies.bar.regions={ half = { region = { box = [[0.5, -1, -1], [2, 1, 1]] }, material = { name = "linear", youngs_modulus = 8e6, poissons_ratio = 0.3, density = 1000 }, adapts_to = { name = "neo_hookean", youngs_modulus = 8e6, poissons_ratio = 0.3, density = 1000 } } }"#,
+            "bodies.bar.adapt.edge_length=1e-9",
+        ],
+        reference: -0.252_781_342_410_316,
+        tolerance: Tolerance::Relative(1e-8),
+        source: "the bar with these two laws as its materials and no `adapt`",
+        mutation: "bodies.bar.regions.half.adapts_to.name=st_venant_kirchhoff",
+        ..BAR
+    },
+    Case {
         id: "adapted_nowhere",
         what: "the same where none ever has",
         settings: &[NEVER, "bodies.bar.adapt.edge_length=1e9"],

@@ -78,30 +78,29 @@ thread_local! {
 type SolidBatch = Batch<Box<dyn Kernel>>;
 
 impl AdaptiveForce {
-    /// Of a body of volumes or of surface elements; all its cells have the same pair of laws, and `description` knows the first.
+    /// Of a body of volumes or of surface elements: `description` knows the first law of its cells, `seconds` the other one of each of
+    /// its materials. Laws know no directions.
     ///
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(
         description: &SolidDescription,
-        laws: [Material; 2],
+        seconds: &[Material],
         adaptation: Adaptation,
     ) -> Result<Self, FlatCell> {
-        let material_of_cell = vec![0; description.mesh.cell_count()];
-        let under = |law| SolidDescription {
-            materials: std::slice::from_ref(law),
-            material_of_cell: &material_of_cell,
-            axes: &[],
-            ..description.clone()
-        };
-        let laws = laws.map(|law| law.of_table());
-        let [first, second] = &laws;
-        // chunks hold the same cells under either law
-        let is_shared = |law: &&Material| law.law.is_linear();
-        let linear = laws.iter().find(is_shared).unwrap_or(first);
-        let shapes = Shapes::of_linear(&under(linear));
-        let solid = |law| SolidForce::of_shapes(&under(law), &shapes, Kernels::FastestAlike);
-        let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
+        assert_eq!(description.materials.len(), seconds.len(), "every material has a second");
+        let laws = [description.materials, seconds].map(Material::all_of_table);
+        let under = |materials| SolidDescription { materials, axes: &[], ..description.clone() };
+        let [firsts, seconds] = &laws;
+        // chunks hold the same cells under either law: those of one shape where one of the two is linear
+        let linear: Vec<Material> = firsts
+            .iter()
+            .zip(seconds)
+            .map(|(first, second)| if second.law.is_linear() { second } else { first }.clone())
+            .collect();
+        let shapes = Shapes::of_linear(&under(&linear));
+        let solid = |laws| SolidForce::of_shapes(&under(laws), &shapes, Kernels::FastestAlike);
+        let (solids, mesh) = ([solid(firsts)?, solid(seconds)?], description.mesh.clone());
         let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
         debug_assert!(
             chunks().zip(solids[1].elements.chunks()).all(|(first, (_, second))| first.cells == second.cells),
@@ -158,7 +157,7 @@ impl AdaptiveForce {
         positions: &[Vec3],
     ) -> f64 {
         let solid = &self.solids[law];
-        let stress = |F: &Mat3| solid.material(0).stress(&solid.completed(cell, *F).0);
+        let stress = |F: &Mat3| solid.material(cell).stress(&solid.completed(cell, *F).0);
         let measure = |element: &Element| element.measure(criterion, stress);
         let over = self.with_cell(cell, positions, measure) / threshold;
         if over.is_nan() { f64::INFINITY } else { over }
@@ -209,7 +208,7 @@ impl AdaptiveForce {
         self.with_cell(cell, positions, |element| {
             let mut sum = 0.0;
             element.at_samples(|F, _, volume, _| {
-                sum += volume * solid.material(0).energy_density(&solid.completed(cell, F).0);
+                sum += volume * solid.material(cell).energy_density(&solid.completed(cell, F).0);
             });
             sum
         })
