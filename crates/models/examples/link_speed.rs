@@ -33,7 +33,7 @@ fn main() {
         let law = (entry.build)(&Making { values: &values, timestep, span: Span::Distance }).unwrap();
         let force = Links::new(LinkDescription {
             name: "lattice".into(),
-            law,
+            law: law.into(),
             ends: &ends,
             span: Span::Distance,
             rest_lengths: &vec![1.0; ends.len()],

@@ -59,7 +59,7 @@ fn world(name: &str, friction: bool, groups: [std::ops::Range<u32>; 2], listing:
     let [first, second] = groups;
     let crowd = Crowd::new(CrowdDescription {
         name: "crowd".into(),
-        law: law(name),
+        law: law(name).into(),
         first,
         second,
         range: 0.12,

@@ -7,10 +7,11 @@ use souple_engine::{
     Configuration, Force, Kinematics, Mass, Model, State, System, TangentWeights, UnknownKind, World,
 };
 use souple_math::Vec3;
-use souple_models::network::laws::{Piecewise, SpringDamper};
+use souple_models::network::laws::SpringDamper;
 use souple_models::network::{
-    Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
-    Links, Listing, Making, Moment, Phase, Reach, Slide, Span,
+    Account, Crowd, CrowdDescription, DrivenLaw, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry,
+    LinkKernel, Links, Listing, Making, Moment, PAIR_MEMORY, Phase, Piecewise, Reach, Recipe, Response,
+    Slide, Span, Wiring,
 };
 use souple_table::{Value, Values};
 
@@ -18,6 +19,10 @@ const TE: f64 = 1e-3;
 
 /// A law of the table with numbers of the size of a metre and a kilonewton.
 fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
+    (entry.build)(&Making { values: &values(entry), timestep: TE, span: Span::Distance }).unwrap()
+}
+
+fn values(entry: &LinkEntry) -> Values {
     let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
         pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
     };
@@ -46,6 +51,8 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
             "thresholds" => Value::Numbers(&[0.9, 1.2, 1.6]),
             "slopes" => Value::Numbers(&[-1000.0, -200.0, 100.0, 0.0]),
             "zero" => Value::Number(1.05),
+            "lengths" => Value::Numbers(&[0.8, 1.0, 1.2, 1.5]),
+            "pushes" => Value::Numbers(&[150.0, 0.0, -40.0, 0.0]),
             "solid_stiffness" => Value::Number(800.0),
             "solid_viscosity" => Value::Number(5.0),
             "fluid_stiffness" => Value::Number(1200.0),
@@ -60,8 +67,7 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
         };
         values.set(parameter.name, value);
     }
-    let values = entry.values(values).unwrap();
-    (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap()
+    entry.values(values).unwrap()
 }
 
 fn links(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], rest: f64, account: Account) -> Links {
@@ -72,7 +78,7 @@ fn links_of(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], span: Span, rest: f64, 
     let lengths = vec![rest; ends.len()];
     Links::new(LinkDescription {
         name: "links".into(),
-        law,
+        law: law.into(),
         ends,
         span,
         rest_lengths: &lengths,
@@ -272,8 +278,8 @@ fn differentials_are_differences() {
 #[test]
 fn characteristics_by_tests_and_by_absolute_values() {
     let (thresholds, slopes) = ([0.9, 1.2, 1.6], [-10.0, -2.0, 1.0, 0.0]);
-    let law = Piecewise::new(&thresholds, &slopes, 0.0, 0.0).unwrap();
-    let (linear, constant, bends) = law.coefficients();
+    let law = Piecewise::new(&thresholds, &slopes, (0.0, 0.0), 0.0).unwrap();
+    let (linear, constant, bends) = law.coefficients().unwrap();
     assert!((linear + 5.0).abs() < 1e-14 && (constant + 4.6).abs() < 1e-14);
     for (found, expected) in bends.iter().zip([4.0, 1.5, -0.5]) {
         assert!((found - expected).abs() < 1e-14);
@@ -291,7 +297,7 @@ fn characteristics_by_tests_and_by_absolute_values() {
         let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, &Moment::of(0.0), &[]).push;
         assert!((found - by_tests(length)).abs() < 1e-13, "at {length}");
     }
-    let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], 0.0, 0.0).unwrap_err().to_string();
+    let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], (0.0, 0.0), 0.0).unwrap_err().to_string();
     assert!(error.contains("thresholds") && error.contains("greater"), "{error}");
 }
 
@@ -440,7 +446,7 @@ fn crowds_are_all_pairs() {
             assert!((1.0..=1.5).contains(&range), "{name} ends at {range}");
             let crowd = Crowd::new(CrowdDescription {
                 name: "crowd".into(),
-                law: law(entry),
+                law: law(entry).into(),
                 first: first.clone(),
                 second: second.clone(),
                 range,
@@ -592,4 +598,150 @@ fn texts_of_laws_are_checked() {
         let message = result.expect_err(words);
         assert!(message.contains(words), "`{words}` is not in: {message}");
     }
+}
+
+/// Two masses that part at a speed and come back, under a force; where they are and what was given off after each step.
+fn swing(force: Box<dyn Force>, speed: f64) -> Vec<[f64; 2]> {
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 2);
+    let stepper = TABLE.find("t_simulation").unwrap();
+    let system = System {
+        name: "main".into(),
+        kinematics,
+        mass: Mass { diagonal: vec![1.0; 2], couplings: Vec::new() },
+        forces: vec![force],
+        constraints: Vec::new(),
+        stepper: (stepper.build)(&stepper.values(Values::new()).unwrap()),
+        steps_per_period: 1,
+    };
+    let mut state = system.initial_state(vec![Vec3::ZERO, Vec3::X]);
+    state.v[1] = Vec3::X * speed;
+    let model = Model { period: TE, systems: vec![system], ..Model::default() };
+    let mut world = model.start(State { systems: vec![state], ..State::default() });
+    let step = |_| {
+        world.step().unwrap();
+        let [a, b] = [0, 1].map(|row| world.state().systems[0].q[row].x);
+        [b - a, world.energy().by_force[0].1.dissipated]
+    };
+    (0..400).map(step).collect()
+}
+
+/// What a pair of a crowd remembers moves on as it does of a link: both swing alike, whatever the law and wherever pairs stand.
+#[test]
+fn pairs_remember_as_links_do() {
+    const RANGE: f64 = 1.4;
+    let few = |entry: &&&LinkEntry| (1..=PAIR_MEMORY).contains(&law(entry).memory_len());
+    let laws: Vec<_> = LINKS.entries.iter().filter(few).collect();
+    assert!(laws.len() >= 5, "{} laws remember", laws.len());
+    for entry in laws {
+        let link = links(law(entry), &[[0, 1]], RANGE, Account::None);
+        let alone = swing(Box::new(link), 2.0);
+        for listing in [Listing::State, Listing::Own] {
+            let crowd = Crowd::new(CrowdDescription {
+                name: "crowd".into(),
+                law: law(entry).into(),
+                first: 0..2,
+                second: 0..2,
+                range: RANGE,
+                friction: None,
+                fusible: None,
+                timestep: TE,
+                listing,
+            });
+            let together = swing(Box::new(crowd), 2.0);
+            let farthest = alone.iter().map(|[apart, _]| *apart).fold(0.0, f64::max);
+            assert!(farthest < RANGE, "{}: {farthest} m", entry.name);
+            for (one, other) in alone.iter().zip(&together) {
+                // directions are made of other roundings
+                let is_near = |i: usize| (one[i] - other[i]).abs() <= 1e-11 * one[i].abs().max(1.0);
+                assert!(is_near(0) && is_near(1), "{}, {listing:?}: {one:?}, {other:?}", entry.name);
+            }
+        }
+    }
+}
+
+/// Whatever number of a law is driven, and to what: the law that is made so in the first place.
+#[test]
+fn driven_laws_are_laws_made_so() {
+    for entry in LINKS.entries {
+        let recipe = Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance };
+        let drivable = recipe.drivable(&*law(entry));
+        assert!(!drivable.is_empty(), "{}", entry.name);
+        for name in drivable {
+            let wiring = Wiring { gain: None, parameters: vec![(name.clone(), 1)] };
+            let driven = DrivenLaw::new(law(entry), recipe.clone(), &wiring);
+            for factor in [1.0, 1.01, 0.99] {
+                let (of_list, number) = (name.split_once('['), |value: f64| value * factor);
+                let mut values = values(entry);
+                let mut to = f64::NAN;
+                if let Some((list, index)) = of_list {
+                    let index: usize = index.trim_end_matches(']').parse().unwrap();
+                    let mut numbers = values.numbers(list).to_vec();
+                    (to, numbers[index]) = (number(numbers[index]), number(numbers[index]));
+                    values.set(list.to_owned(), Value::Numbers(&numbers));
+                } else if let Some(Value::Number(value)) = values.get(&name) {
+                    to = number(value);
+                    values.set(name.clone(), Value::Number(to));
+                } else if let Some(Value::Integer(value)) = values.get(&name) {
+                    to = value as f64;
+                } else {
+                    let mut texts = values.texts("parameters").to_vec();
+                    for (_, text) in texts.iter_mut().filter(|(known, _)| *known == name) {
+                        to = number(if text == "1 kN/m" { 1000.0 } else { text.parse().unwrap() });
+                        *text = to.to_string();
+                    }
+                    values.set("parameters", Value::Texts(&texts));
+                }
+                let made = (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance });
+                // where these numbers make no law together, the driven one is at fault too
+                let Ok(made) = made else {
+                    assert!(driven.fault(&[0.0, to]).is_some(), "{} {name} {to}", entry.name);
+                    continue;
+                };
+                assert_eq!(driven.fault(&[0.0, to]), None, "{} {name}", entry.name);
+                let mut numbers = [[0.0; 16]; 2];
+                for (length, before) in [(1.02, 1.0), (0.93, 0.95), (1.3, 1.29), (0.6, 0.7)] {
+                    let (reach, moment) = (Reach { length, before, rest: 1.0 }, Moment::of(0.0));
+                    let [own, other] = &mut numbers;
+                    made.begin(1.0, 1.0, own);
+                    let expected = made.respond_and_remember(&reach, &moment, own);
+                    driven.acting(&[0.0, to], &mut |law| {
+                        law.begin(1.0, 1.0, other);
+                        let response = law.respond_and_remember(&reach, &moment, other);
+                        let both = |r: &Response| [r.push.to_bits(), r.stored.to_bits(), r.heat.to_bits()];
+                        assert_eq!(both(&response), both(&expected), "{} {name} {to}", entry.name);
+                    });
+                    assert_eq!(own, other, "{} {name}", entry.name);
+                }
+            }
+        }
+    }
+}
+
+/// Numbers that make no law are told with what would be accepted, and a damper that is driven from nothing keeps no energy.
+#[test]
+fn wrong_numbers_are_faults() {
+    let recipe = |name: &str| {
+        let entry = LINKS.find(name).unwrap();
+        Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance }
+    };
+    let driven = |name: &str, parameter: &str| {
+        let wiring = Wiring { gain: None, parameters: vec![(parameter.to_owned(), 0)] };
+        DrivenLaw::new(law(LINKS.find(name).unwrap()), recipe(name), &wiring)
+    };
+    let told = |name: &str, parameter: &str, number: f64| driven(name, parameter).fault(&[number]).unwrap();
+    assert_eq!(
+        told("spring", "stiffness", -5.0),
+        "`stiffness` is -5, but must be a number of at least 0 [N/m]"
+    );
+    assert!(told("spring", "stiffness", f64::NAN).contains("`stiffness` is NaN"));
+    assert!(told("elasto_plastic", "rupture", 10.0).contains("it must be greater than `traction`, 20"));
+    assert!(driven("spring", "stiffness").is_conservative());
+    let entry = LINKS.find("spring_damper").unwrap();
+    let values = entry.values(values(entry).with("damping", Value::Number(0.0))).unwrap();
+    let undamped = (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap();
+    assert!(undamped.is_conservative());
+    let wiring = Wiring { gain: None, parameters: vec![("damping".to_owned(), 0)] };
+    let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance };
+    assert!(!DrivenLaw::new(undamped, recipe, &wiring).is_conservative());
 }

@@ -101,6 +101,13 @@ fn parameters_are_driven() {
     let written = "{ name = \"formula\", push = \"-k*(D - L0)\", parameters = { k = 5 } }";
     near(push(written, &turned("k", "7")), -0.7);
     near(push(written, ""), -0.5);
+    let bent = "{ name = \"cohesion\", distance = 1, peak = 1.2, range = 1.5, cohesion = 4 }";
+    near(push(bent, &turned("cohesion", "7")), -0.7);
+    let pieces = "{ name = \"piecewise_linear\", thresholds = [1.05], slopes = [-10, -20], zero = 1 }";
+    near(push(pieces, ""), -1.5);
+    near(push(pieces, &turned("slopes[1]", "-40")), -2.5);
+    let compiled = "{ name = \"rheological\", network = \"spring(k)\", parameters = { k = \"5 N/m\" } }";
+    near(push(compiled, &turned("k", "7")), -0.7);
     let reads = format!(
         "{}inputs.x = {{ of = \"bob\", quantity = \"position\", component = \"x\" }}\n",
         turned("stiffness", "100 * x")
@@ -147,11 +154,13 @@ fn wrong_controls_are_refused() {
         &with("links = \"band\"\nparameter = \"mass\"\nvalue = \"1\""),
         &["no `mass` that can be driven", "stiffness, damping"],
     );
+    refused(&with("connects = \"t < 1\""), &["does not say what it drives", "links, or crowds"]);
+    refused(&with("crowds = \"band\"\nconnects = \"t < 1\""), &["no crowds `band`"]);
     let bent = pulled(
         "{ name = \"cohesion\", distance = 1, peak = 1.2, range = 1.5, cohesion = 4 }",
-        "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"cohesion\"\nvalue = \"1\"\n",
+        "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"viscosity\"\nvalue = \"1\"\n",
     );
-    refused(&bent, &["no `cohesion` that can be driven", "`connects`", "`spring_damper`"]);
+    refused(&bent, &["no `viscosity` that can be driven", "distance, hard, peak, range"]);
     refused(
         &with("links = \"band\"\nconnects = \"x > 0\"\ninputs.x = { of = \"bob\", quantity = \"position\" }"),
         &["`x` is a vector", "component"],
@@ -162,4 +171,73 @@ fn wrong_controls_are_refused() {
     );
     let twice = "[networks.n.controls.c]\nlinks = \"band\"\nconnects = \"t < 1\"\n[networks.n.controls.d]\nlinks = \"band\"\nconnects = \"t < 2\"\n";
     refused(&pulled(SPRING, twice), &["two controls connect the links `band`"]);
+}
+
+/// Two balls of 1 kg that press each other, 9 cm apart, under crowds that reach 10 cm.
+fn pressed(law: &str, more: &str, controls: &str) -> String {
+    format!(
+        "[networks.n.masses.nail]\npositions = [[0, 0, 0]]\nmass = 1\nfixed = true\n\
+         [networks.n.masses.bob]\npositions = [[0.09, 0, 0]]\nmass = 1\n\
+         [[networks.n.crowds]]\nname = \"touch\"\nlaw = {law}\n{more}{controls}"
+    )
+}
+
+const BALL: &str = "{ name = \"ball\", threshold = 0.1, stiffness = 100 }";
+
+/// What acts between masses that come near is driven as links are: parted, made slowly, its numbers turned.
+#[test]
+fn crowds_are_driven() {
+    let push = |text: &str| {
+        let mut world = world(text);
+        world.step().unwrap();
+        world.state().systems[0].v[1].x / 1e-3
+    };
+    let near = |measured: f64, expected: f64| {
+        assert!((measured - expected).abs() < 1e-9, "{measured}, not {expected}")
+    };
+    let control = |what: &str| format!("[networks.n.controls.c]\ncrowds = \"touch\"\n{what}\n");
+    let friction = "friction = { static = 0.6, kinetic = 0.5, stiffness = 50 }\n";
+    for more in ["", friction] {
+        near(push(&pressed(BALL, more, "")), 1.0);
+        near(push(&pressed(BALL, more, &control("connects = \"t > 1\""))), 0.0);
+        near(push(&pressed(BALL, more, &control("connects = \"t > 1\"\nramp = \"4 ms\""))), 0.75);
+        let stiffer = control("parameter = \"stiffness\"\nvalue = \"300\"");
+        near(push(&pressed(BALL, more, &stiffer)), 3.0);
+        // half of three times
+        let both = format!(
+            "{stiffer}[networks.n.controls.d]\ncrowds = \"touch\"\nconnects = \"t > 1\"\nramp = \"2 ms\"\n"
+        );
+        near(push(&pressed(BALL, more, &both)), 1.5);
+    }
+    // what it makes is booked: half the energy of a ball pressed by 1 cm
+    let mut world = world(&pressed(BALL, "", &control("connects = \"t > 1\"")));
+    world.step().unwrap();
+    let energy = world.energy();
+    near(energy.made_by_control[0].1, -0.5 * 100.0 * 0.01 * 0.01);
+    near(energy.total() - energy.made_by_control[0].1, 0.005);
+}
+
+/// A control that leaves the range of a parameter, or that of the pairs that are looked for, stops the run with its numbers.
+#[test]
+fn numbers_that_make_no_law_are_told() {
+    let stopped = |text: &str, words: &[&str]| {
+        let mut world = world(text);
+        let error = (0..20).find_map(|_| world.step().err()).expect("the run stops").to_string();
+        for word in words {
+            assert!(error.contains(word), "`{word}` is not in: {error}");
+        }
+    };
+    let control =
+        "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"stiffness\"\nvalue = \"5 - 1000*t\"\n";
+    stopped(
+        &pulled(SPRING, control),
+        &["n.links[0]", "`stiffness` is -1", "must be a number of at least 0 [N/m]", "time"],
+    );
+    let wider =
+        "[networks.n.controls.c]\ncrowds = \"touch\"\nparameter = \"threshold\"\nvalue = \"0.1 + t\"\n";
+    stopped(&pressed(BALL, "", wider), &["n.crowds[0]", "act up to 0.101 m", "within 0.1 m", "`range`"]);
+    let mut world = world(&pressed(BALL, "range = 0.2\n", wider));
+    (0..20).for_each(|_| world.step().unwrap());
+    // from 2 cm beyond on
+    assert!(world.state().systems[0].v[1].x > 0.0);
 }

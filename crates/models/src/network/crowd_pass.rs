@@ -114,12 +114,12 @@ impl Task {
     fn act_together(
         &mut self,
         at: &Configuration,
-        (law, range, friction): (&dyn LinkKernel, f64, Option<&Friction>),
+        with: &Evaluation,
         known: &mut Known,
         forces: &mut [Vec3],
     ) {
         let mut batch = std::mem::take(&mut self.batch);
-        batch.respond(law, range, at.time, friction.is_some());
+        batch.respond(with, at.time);
         for (i, ((slot, pair), [d, before])) in batch.pairs.iter().zip(&batch.ways).enumerate() {
             let length = batch.lengths[0][i];
             let along = if length > f64::MIN_POSITIVE {
@@ -129,7 +129,7 @@ impl Task {
             };
             let mut force = along * batch.pushes[i];
             self.heat += batch.heats[i];
-            if let Some(friction) = friction
+            if let Some(friction) = with.friction
                 && batch.still[i] > 0.0
                 && length > f64::MIN_POSITIVE
             {
@@ -187,7 +187,8 @@ impl Batch {
         }
     }
 
-    fn respond(&mut self, law: &dyn LinkKernel, range: f64, time: f64, has_friction: bool) {
+    fn respond(&mut self, with: &Evaluation, time: f64) {
+        let Evaluation { law, gain, range, .. } = *with;
         let Self { lengths, pushes, still, heats, unused, .. } = self;
         let whole = lengths[0].len().next_multiple_of(LANES);
         lengths.iter_mut().for_each(|lengths| lengths.resize(whole, range));
@@ -196,9 +197,12 @@ impl Batch {
             .for_each(|list| list.resize(whole, 0.0));
         let [now, before] = lengths.each_ref();
         law.respond_to_many(range, time, [now, before], [pushes, heats]);
-        if has_friction {
+        if with.friction.is_some() {
             // the elastic part alone presses
             law.respond_to_many(range, time, [now, now], [still, unused]);
+        }
+        if gain != 1.0 {
+            [pushes, still, heats].into_iter().flatten().for_each(|number| *number *= gain);
         }
     }
 
@@ -215,6 +219,8 @@ pub struct Evaluation<'a> {
     pub groups: Groups<'a>,
     pub list: &'a Neighbours,
     pub law: &'a dyn LinkKernel,
+    /// How much of the law acts.
+    pub gain: f64,
     pub friction: Option<&'a Friction>,
     /// [m]
     pub range: f64,
@@ -236,7 +242,7 @@ impl Pass {
         mut out: Option<&mut [Vec3]>,
         act: &(impl Fn([u32; 2], [Vec3; 2], Option<&[f64]>, &mut Task) -> Vec3 + Sync),
     ) {
-        let Evaluation { groups, list, law, friction, range, timestep, kept_len, are_plain } = *with;
+        let Evaluation { groups, list, range, timestep, kept_len, are_plain, .. } = *with;
         let (count, first_row) = (groups.first.len(), groups.first.start);
         let together = count.div_ceil(TASKS).max(1).next_multiple_of(TOGETHER);
         self.tasks.resize_with(count.div_ceil(together), Task::default);
@@ -256,7 +262,7 @@ impl Pass {
                 batch.gather((own, first_row), (list, range, timestep), at, leaving, (first_slot, forces));
                 if are_plain {
                     task.batch = batch;
-                    task.act_together(at, (law, range, friction), &mut known, forces);
+                    task.act_together(at, with, &mut known, forces);
                     continue;
                 }
                 for ((slot, pair), ways) in batch.pairs.iter().zip(&batch.ways) {
@@ -413,6 +419,7 @@ mod tests {
                 groups,
                 list: &list,
                 law: &InLanes(Apart),
+                gain: 1.0,
                 friction: None,
                 range: 0.6,
                 timestep: 1e-3,

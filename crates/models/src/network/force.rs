@@ -8,6 +8,7 @@ use souple_engine::{
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
+use super::driven::DrivenLaw;
 use super::kernel::{LinkKernel, Moving};
 use super::law::{AsksFor, Moment, Reach};
 use super::layout::{Arrangement, Ends, LANES, Layout, Part};
@@ -20,7 +21,7 @@ use crate::solids::parallel;
 #[derive(Debug)]
 pub struct LinkDescription<'a> {
     pub name: String,
-    pub law: Box<dyn LinkKernel>,
+    pub law: DrivenLaw,
     pub ends: &'a [Ends],
     /// How far they are apart.
     pub span: Span,
@@ -41,18 +42,6 @@ pub enum Account {
     Heat,
 }
 
-/// What controls drive of links: places among the driven parameters of State.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wiring {
-    /// How much of the links acts, from 0, parted, to 1.
-    pub gain: Option<usize>,
-    /// Registers of the law and where their values are.
-    pub registers: Vec<(usize, usize)>,
-}
-
-/// Most registers of one law that are driven.
-pub const REGISTERS: usize = 8;
-
 /// Links of one law: `F1 = φ(D, D^r, memory) u = -F2` with `u = (P1 - P2)/D`, or with a given `u` ([`Span::Along`]).
 ///
 /// `D^r` is taken from `X - h v`: a pair that turns without changing its length feels no damping. Its memory is, for
@@ -60,7 +49,7 @@ pub const REGISTERS: usize = 8;
 #[derive(Debug)]
 pub struct Links {
     name: String,
-    law: Box<dyn LinkKernel>,
+    law: DrivenLaw,
     layout: Layout,
     span: Span,
     timestep: f64,
@@ -69,7 +58,6 @@ pub struct Links {
     place_of: Vec<(u32, u32)>,
     /// At the start [m]; of links that remember.
     lengths: Vec<f64>,
-    wiring: Wiring,
 }
 
 /// What one link does.
@@ -121,33 +109,8 @@ impl Links {
                 place_of[*link as usize] = (number as u32, slot as u32);
             }
         }
-        let lengths = if law.memory_len() > 0 { lengths.to_vec() } else { Vec::new() };
-        Self { name, law, layout, span, timestep, account, place_of, lengths, wiring: Wiring::default() }
-    }
-
-    /// The same with parameters driven, at most [`REGISTERS`] of the law.
-    #[must_use]
-    pub fn wired(mut self, wiring: Wiring) -> Self {
-        self.wiring = wiring;
-        self
-    }
-
-    /// Lends the law as it is driven.
-    fn acting(&self, driven: &[f64], act: &mut dyn FnMut(&dyn LinkKernel)) {
-        if self.wiring.registers.is_empty() {
-            return act(&*self.law);
-        }
-        let mut values = [(0, 0.0); REGISTERS];
-        let count = self.wiring.registers.len().min(REGISTERS);
-        for (value, (register, slot)) in values.iter_mut().zip(&self.wiring.registers) {
-            *value = (*register, driven[*slot]);
-        }
-        self.law.driven(&values[..count], self.timestep, act);
-    }
-
-    /// How much of the links acts.
-    fn gain(&self, driven: &[f64]) -> f64 {
-        self.wiring.gain.map_or(1.0, |slot| driven[slot])
+        let lengths = if law.written().memory_len() > 0 { lengths.to_vec() } else { Vec::new() };
+        Self { name, law, layout, span, timestep, account, place_of, lengths }
     }
 
     pub fn link_count(&self) -> usize {
@@ -156,7 +119,7 @@ impl Links {
 
     /// Numbers that each link remembers.
     pub fn remembered_len(&self) -> usize {
-        self.law.memory_len()
+        self.law.written().memory_len()
     }
 
     /// What a link takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
@@ -165,12 +128,12 @@ impl Links {
     pub fn stiffest(&self) -> f64 {
         let rest =
             self.layout.parts.iter().find(|part| !part.links.is_empty()).map_or(0.0, |part| part.rest(0)[0]);
-        self.law.stiffest(rest)
+        self.law.written().stiffest(rest)
     }
 
     /// Whether the law asks where ends are.
     pub fn asks_for(&self) -> AsksFor {
-        self.law.asks_for()
+        self.law.written().asks_for()
     }
 
     fn moving<'a>(&self, at: &Configuration<'a>) -> Moving<'a> {
@@ -190,12 +153,12 @@ impl Links {
     }
 
     fn remembers(&self) -> bool {
-        self.law.memory_len() > 0 || self.account == Account::Heat
+        self.law.written().memory_len() > 0 || self.account == Account::Heat
     }
 
     fn of_part<'m>(&self, number: usize, memory: &'m [f64]) -> &'m [f64] {
         if self.remembers() {
-            &memory[self.layout.memory_range(number, self.law.memory_len())][1..]
+            &memory[self.layout.memory_range(number, self.law.written().memory_len())][1..]
         } else {
             &[]
         }
@@ -203,7 +166,7 @@ impl Links {
 
     /// The numbers of a part's `slot`-th link.
     fn remembered(&self, part: &Part, slot: usize, memory: &[f64]) -> [f64; WRITTEN_MEMORY] {
-        let ((block, lane), len) = (part.place(slot), self.law.memory_len());
+        let ((block, lane), len) = (part.place(slot), self.law.written().memory_len());
         std::array::from_fn(|i| if i < len { memory[(block * len + i) * LANES + lane] } else { 0.0 })
     }
 
@@ -238,8 +201,8 @@ impl Links {
         let memory = self.remembered(part, slot as usize, self.of_part(number as usize, at.memory));
         let Standing { reach, moment, .. } = self.standing(part, slot as usize, at);
         let (mut stance, gain) =
-            (LinkStance { length: reach.length, push: 0.0, stored: 0.0 }, self.gain(at.driven));
-        self.acting(at.driven, &mut |law| {
+            (LinkStance { length: reach.length, push: 0.0, stored: 0.0 }, self.law.gain(at.driven));
+        self.law.acting(at.driven, &mut |law| {
             let response = law.respond(&reach, &moment, &memory);
             (stance.push, stance.stored) = (gain * response.push, gain * response.stored);
         });
@@ -256,9 +219,9 @@ impl Links {
         mut visit: impl FnMut([u32; 2], Mat3),
     ) -> bool {
         let mut turned = false;
-        let gain = self.gain(at.driven);
+        let gain = self.law.gain(at.driven);
         if gain != 0.0 {
-            self.acting(at.driven, &mut |law| {
+            self.law.acting(at.driven, &mut |law| {
                 let weights =
                     TangentWeights { position: gain * weights.position, velocity: gain * weights.velocity };
                 turned = self.visit_tangents_of(law, at, curvature, weights, &mut visit);
@@ -366,7 +329,7 @@ impl Force for Links {
 
     fn memory_len(&self) -> usize {
         if self.remembers() {
-            self.layout.memory_range(self.layout.parts.len(), self.law.memory_len()).start
+            self.layout.memory_range(self.layout.parts.len(), self.law.written().memory_len()).start
         } else {
             0
         }
@@ -374,7 +337,7 @@ impl Force for Links {
 
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
-        let len = self.law.memory_len();
+        let len = self.law.written().memory_len();
         if len == 0 {
             return;
         }
@@ -384,7 +347,7 @@ impl Force for Links {
             for slot in 0..part.links.len() {
                 let (block, lane) = part.place(slot);
                 let length = self.lengths[part.links[slot] as usize];
-                self.law.begin(part.rest(block)[lane], length, &mut numbers);
+                self.law.written().begin(part.rest(block)[lane], length, &mut numbers);
                 for (i, value) in numbers.iter().enumerate() {
                     own[(block * len + i) * LANES + lane] = *value;
                 }
@@ -397,12 +360,12 @@ impl Force for Links {
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let len = self.law.memory_len();
+        let len = self.law.written().memory_len();
         let heat = |number: usize| at.memory[self.layout.memory_range(number, len).start];
         let parts = 0..self.layout.parts.len();
         let dissipated = if self.remembers() { parts.clone().map(heat).sum() } else { 0.0 };
-        let (mut stored, gain) = (0.0, self.gain(at.driven));
-        self.acting(at.driven, &mut |law| {
+        let (mut stored, gain) = (0.0, self.law.gain(at.driven));
+        self.law.acting(at.driven, &mut |law| {
             let of_part = |number: usize| {
                 let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
                 let of = |slot| {
@@ -420,15 +383,15 @@ impl Force for Links {
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
         let sums: &mut Sums =
             scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"));
-        let (gain, rows) = (self.gain(at.driven), self.layout.rows());
+        let (gain, rows) = (self.law.gain(at.driven), self.layout.rows());
         let out = &mut out[rows.clone()];
         if gain == 1.0 {
-            self.acting(at.driven, &mut |law| self.sum(law, at, sums, out));
+            self.law.acting(at.driven, &mut |law| self.sum(law, at, sums, out));
         } else if gain != 0.0 {
             let mut whole = std::mem::take(&mut sums.whole);
             whole.clear();
             whole.resize(rows.len(), Vec3::ZERO);
-            self.acting(at.driven, &mut |law| self.sum(law, at, sums, &mut whole));
+            self.law.acting(at.driven, &mut |law| self.sum(law, at, sums, &mut whole));
             for (out, force) in out.iter_mut().zip(&whole) {
                 *out += *force * gain;
             }
@@ -482,14 +445,14 @@ impl Force for Links {
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        let gain = self.gain(at.driven);
+        let gain = self.law.gain(at.driven);
         // what is parted remembers what it was
         if !self.remembers() || gain == 0.0 {
             return;
         }
         let moving = self.moving(at);
-        self.acting(at.driven, &mut |law| {
-            self.layout.advance(self.law.memory_len(), memory, |part, own| {
+        self.law.acting(at.driven, &mut |law| {
+            self.layout.advance(self.law.written().memory_len(), memory, |part, own| {
                 let (heat, numbers) = own.split_at_mut(1);
                 heat[0] += gain
                     * match self.span {
@@ -504,8 +467,8 @@ impl Force for Links {
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
-        let gain = self.gain(at.driven);
-        self.acting(at.driven, &mut |law| {
+        let gain = self.law.gain(at.driven);
+        self.law.acting(at.driven, &mut |law| {
             for (number, slot) in &self.place_of {
                 let (part, slot) = (&self.layout.parts[*number as usize], *slot as usize);
                 let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
@@ -518,6 +481,10 @@ impl Force for Links {
                 visit(&LinkShown { ends: rows, state, push });
             }
         });
+    }
+
+    fn fault(&self, at: &Configuration) -> Option<(usize, String)> {
+        Some((self.layout.rows().start, self.law.fault(at.driven)?))
     }
 
     fn bytes(&self) -> usize {

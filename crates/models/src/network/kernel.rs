@@ -9,6 +9,7 @@ use souple_math::{Dual, Lanes, Real, Vec3};
 use super::law::{AsksFor, LinkLaw, MEMORY, Moment, Reach, Response};
 use super::layout::{LANES, Part};
 use super::span::{Between, Known, OnAxis, Projected};
+use super::written::WRITTEN_MEMORY;
 
 /// All rows as they move; memories beside them are of a part's links, `[block][number][lane]`.
 #[derive(Clone, Copy, Debug)]
@@ -56,8 +57,14 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], out: &mut [f64]);
     /// [`LinkKernel::advance`] along an axis.
     fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64;
-    /// Force and energy of one link.
-    fn respond(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> Response;
+    /// Force and energy of one link; `memory` becomes that of the next step.
+    fn respond_and_remember(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response;
+    /// The same without a next step.
+    fn respond(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> Response {
+        let (mut numbers, len) = ([0.0; WRITTEN_MEMORY], self.memory_len());
+        numbers[..len].copy_from_slice(&memory[..len]);
+        self.respond_and_remember(reach, moment, &mut numbers[..len])
+    }
     /// The same of many links of one rest length, of a law without memory: pushes [N] and heats [J] over lengths now and a step
     /// before [m]. All slices are whole blocks of eight.
     fn respond_to_many(
@@ -81,10 +88,16 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn asks_for(&self) -> AsksFor {
         AsksFor::default()
     }
-    /// Names of the parameters that a control may drive.
-    fn registers(&self) -> Vec<&str>;
-    /// Lends the law with other values in registers, for a step of so many seconds; without any, itself.
-    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel));
+    /// Numbers of its entry that say what links begin with and nothing later: there is nothing in them to drive.
+    fn begins_with(&self) -> &[&'static str] {
+        &[]
+    }
+    /// Names of the parameters that it keeps in place: driven, the law is not made anew ([`super::DrivenLaw`]).
+    fn registers(&self) -> Vec<&str> {
+        Vec::new()
+    }
+    /// Lends the law with other values in registers.
+    fn driven(&self, values: &[(usize, f64)], act: &mut dyn FnMut(&dyn LinkKernel));
 }
 
 /// [`LinkKernel`] of a law in lanes.
@@ -152,8 +165,12 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         Arch::new().dispatch(Advance { law: &self.0, part, rows: on_axis, memory })
     }
 
-    fn respond(&self, reach: &Reach, _: &Moment, memory: &[f64]) -> Response {
-        self.0.respond(reach, &mut self.numbers(memory, |number| number))
+    fn respond_and_remember(&self, reach: &Reach, _: &Moment, memory: &mut [f64]) -> Response {
+        let mut numbers = self.numbers(memory, |number| number);
+        let response = self.0.respond(reach, &mut numbers);
+        let len = self.0.memory_len();
+        memory[..len].copy_from_slice(&numbers[..len]);
+        response
     }
 
     fn respond_to_many(
@@ -177,20 +194,8 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         })
     }
 
-    fn registers(&self) -> Vec<&str> {
-        self.0.registers().to_vec()
-    }
-
-    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel)) {
-        let mut law: Option<L> = None;
-        for (register, value) in values {
-            let changed = law.as_ref().unwrap_or(&self.0).with_register(*register, *value, timestep);
-            law = changed.or(law);
-        }
-        match law {
-            Some(law) => act(&InLanes(law)),
-            None => act(self),
-        }
+    fn driven(&self, _: &[(usize, f64)], act: &mut dyn FnMut(&dyn LinkKernel)) {
+        act(self);
     }
 }
 

@@ -98,19 +98,6 @@ pub trait LinkLaw: Debug + Send + Sync + 'static {
     fn state(&self, _rest: f64, _memory: &[f64]) -> LinkState {
         LinkState::In(0)
     }
-
-    /// Names of the parameters that a control may drive.
-    fn registers(&self) -> &[&'static str] {
-        &[]
-    }
-
-    /// The same law with another value in a register, in its SI unit, for a step of so many seconds.
-    fn with_register(&self, _register: usize, _value: f64, _timestep: f64) -> Option<Self>
-    where
-        Self: Sized,
-    {
-        None
-    }
 }
 
 /// What laws are made from.

@@ -264,6 +264,12 @@ impl Force for ViewedLinks {
         self.add_seen_blocks(at, Curvature::Definite, weights, seen(scratch), matrix)
     }
 
+    fn fault(&self, at: &Configuration) -> Option<(usize, String)> {
+        let (end, what) = self.links.fault(at)?;
+        let none = vec![Mat3::IDENTITY; self.points.len()];
+        Some((self.changes(end as u32, &none).first()?.0 as usize, what))
+    }
+
     /// Nothing comes and goes; but what is seen is computed in the scratch.
     fn kept_len(&self) -> Option<usize> {
         (self.links.memory_len() > 0).then_some(0)

@@ -39,12 +39,16 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
     fn idle_from(&self, _memory: &[f64]) -> Option<f64> {
         None
     }
-    /// Names of the parameters that a control may drive.
+    /// See [`LinkKernel::begins_with`].
+    fn begins_with(&self) -> &[&'static str] {
+        &[]
+    }
+    /// See [`LinkKernel::registers`].
     fn registers(&self) -> Vec<&str> {
         Vec::new()
     }
     /// The same law with another value in a register; nothing is allocated.
-    fn with_register(&self, _register: usize, _value: f64, _timestep: f64) -> Option<Self>
+    fn with_register(&self, _register: usize, _value: f64) -> Option<Self>
     where
         Self: Sized,
     {
@@ -180,11 +184,8 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
         self.move_on(part, on_axis, memory)
     }
 
-    fn respond(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> Response {
-        let mut numbers = [0.0; WRITTEN_MEMORY];
-        let len = self.0.memory_len();
-        numbers[..len].copy_from_slice(&memory[..len]);
-        self.0.respond(reach, moment, &mut numbers[..len])
+    fn respond_and_remember(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response {
+        self.0.respond(reach, moment, memory)
     }
 
     fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2] {
@@ -195,14 +196,18 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
         self.0.asks_for()
     }
 
+    fn begins_with(&self) -> &[&'static str] {
+        self.0.begins_with()
+    }
+
     fn registers(&self) -> Vec<&str> {
         self.0.registers()
     }
 
-    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel)) {
+    fn driven(&self, values: &[(usize, f64)], act: &mut dyn FnMut(&dyn LinkKernel)) {
         let mut law: Option<L> = None;
         for (register, value) in values {
-            let changed = law.as_ref().unwrap_or(&self.0).with_register(*register, *value, timestep);
+            let changed = law.as_ref().unwrap_or(&self.0).with_register(*register, *value);
             law = changed.or(law);
         }
         match law {

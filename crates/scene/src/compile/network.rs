@@ -33,6 +33,7 @@ use crate::measure::ContourInfo;
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
+use crate::spec::control::Driven;
 use crate::spec::network::{CrowdSpec, FrictionSpec, FusibleSpec, LinkTable, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
@@ -167,7 +168,7 @@ pub fn add_forces(
     let first = body.rows.start as u32;
     for (index, links) in body.links.iter().enumerate() {
         let table = &network.links[links.table];
-        let Some(law) = law(table.law.as_ref(), (timestep, table.span), draft) else { continue };
+        let Some(law) = self::law(table.law.as_ref(), (timestep, table.span), draft) else { continue };
         let masses = body.mesh.points.len() as u32;
         let is_viewed = links.ends.iter().flatten().any(|end| *end >= masses);
         let seen = is_viewed
@@ -176,7 +177,9 @@ pub fn add_forces(
             Some(seen) => seen.ends.clone(),
             None => links.ends.iter().map(|ends| ends.map(|end| first + end)).collect(),
         };
-        let wiring = controls::wiring(draft, body, network, &table.name, law.as_ref());
+        let driven = Driven::Links(table.name.as_str());
+        let law =
+            controls::driven(draft, body, network, driven, (law, table.law.as_ref()), (timestep, table.span));
         let links = Links::new(LinkDescription {
             name: format!("{}.links[{index}]", body.spec.name),
             law,
@@ -200,7 +203,6 @@ pub fn add_forces(
             };
             draft.log.add(Code::Conflict, &table.site, message, expected);
         }
-        let links = links.wired(wiring);
         match seen {
             Some(seen) => forces.push(Box::new(seen.seen_by(links))),
             None => forces.push(Box::new(links)),
@@ -210,7 +212,7 @@ pub fn add_forces(
     let listing =
         if stepper.is_none_or(|stepper| stepper.reads_cliques()) { Listing::State } else { Listing::Own };
     for (index, crowd) in network.crowds.iter().enumerate() {
-        let name = crowd.name.clone().unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name));
+        let name = crowd_force(crowd, index, &body.spec.name);
         if let Some(crowd) = self::crowd(name, crowd, body, network, (timestep, listing), draft) {
             forces.push(Box::new(crowd));
         }
@@ -235,6 +237,11 @@ fn law(
     }
 }
 
+/// The name of the force of a crowd.
+fn crowd_force(spec: &CrowdSpec, index: usize, body: &str) -> String {
+    spec.force.clone().unwrap_or_else(|| format!("{body}.crowds[{index}]"))
+}
+
 fn crowd(
     name: String,
     spec: &CrowdSpec,
@@ -243,7 +250,7 @@ fn crowd(
     (timestep, listing): (f64, Listing),
     draft: &Draft,
 ) -> Option<Crowd> {
-    let law = law(spec.law.as_ref(), (timestep, Span::Distance), draft)?;
+    let law = self::law(spec.law.as_ref(), (timestep, Span::Distance), draft)?;
     if law.asks_for() != AsksFor::default() {
         let message =
             "a condition asks where the ends are, and pairs of a crowd know how far apart they are alone";
@@ -289,6 +296,9 @@ fn crowd(
         }
         None => None,
     };
+    let driven = Driven::Crowds(spec.name.as_str());
+    let law =
+        controls::driven(draft, body, network, driven, (law, spec.law.as_ref()), (timestep, Span::Distance));
     let rows = |numbers: Range<u32>| {
         let base = body.rows.start as u32;
         base + numbers.start..base + numbers.end

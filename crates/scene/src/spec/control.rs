@@ -30,13 +30,14 @@ static INPUT: Keys = Keys::new(
 
 pub(super) static CONTROL: Keys = Keys::new(
     "control",
-    "what makes and breaks links, or turns a parameter of their law, while the world runs: `connects`, or `parameter` and `value`",
+    "what makes and breaks links or crowds, or turns a parameter of their law, while the world runs: `connects`, or `parameter` and `value`",
     &[
-        Key::new("links", Shape::Text, "the `name` of the tables of links").required(),
+        Key::new("links", Shape::Text, "the `name` of the tables of links"),
+        Key::new("crowds", Shape::Text, "or that of crowds or encounters"),
         Key::new(
             "connects",
             Shape::Text,
-            "a condition on t, previous (1 while connected) and the inputs: the links act while it holds",
+            "a condition on t, previous (1 while connected) and the inputs: what it drives acts while it holds",
         ),
         Key::number(
             "ramp",
@@ -54,11 +55,18 @@ pub(super) static CONTROL: Keys = Keys::new(
 /// A control as it is written.
 pub struct ControlSpec {
     pub name: String,
-    /// Name of the tables of links.
-    pub links: String,
+    /// What it drives.
+    pub of: Driven<String>,
     pub drives: Option<Drives>,
     pub inputs: Vec<InputSpec>,
     pub site: Site,
+}
+
+/// Links or crowds, by what controls call them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Driven<N> {
+    Links(N),
+    Crowds(N),
 }
 
 /// What a control does.
@@ -118,7 +126,7 @@ impl ControlSpec {
                 .ok(),
             _ => {
                 refuse(
-                    "links",
+                    "parameter",
                     format!("control `{name}` does not say what it does"),
                     "connects, or parameter and value",
                 );
@@ -126,7 +134,37 @@ impl ControlSpec {
             }
         };
         let inputs = inputs.iter().map(|(name, input)| InputSpec::read(name, input)).collect();
-        Self { name, links: reader.text("links"), drives, inputs, site: reader.site() }
+        let of = match reader.written(&["links", "crowds"])[..] {
+            ["crowds"] => Driven::Crowds(reader.text("crowds")),
+            ["links"] => Driven::Links(reader.text("links")),
+            _ => {
+                let message = format!("control `{name}` does not say what it drives");
+                reader.log().add(Code::MissingKey, &reader.site(), message, "links, or crowds: a name");
+                Driven::Links(String::new())
+            }
+        };
+        Self { name, of, drives, inputs, site: reader.site() }
+    }
+}
+
+impl<N: AsRef<str>> Driven<N> {
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Links(name) | Self::Crowds(name) => name.as_ref(),
+        }
+    }
+
+    /// In words.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Self::Links(_) => "links",
+            Self::Crowds(_) => "crowds",
+        }
+    }
+
+    /// Whether it is this, and has a name.
+    pub fn is<M: AsRef<str>>(&self, other: &Driven<M>) -> bool {
+        self.noun() == other.noun() && self.name() == other.name() && !self.name().is_empty()
     }
 }
 

@@ -182,6 +182,7 @@ pub(super) static CROWD: Keys = Keys::new(
     "a law between all masses that are near each other at any time",
     &[
         Key::new("law", Shape::Entry(LINK), "what they do to each other").required(),
+        Key::new("name", Shape::Text, "what controls call it"),
         Key::new(
             "of",
             Shape::Texts,
@@ -215,7 +216,7 @@ pub(crate) static NETWORK: Keys = Keys::new(
         PORTS_KEY,
         CONNECTIONS_KEY,
         Key::new("views", Shape::Named(&VIEW), "what links may see in the place of masses"),
-        Key::new("controls", Shape::Named(&CONTROL), "what drives links and their parameters"),
+        Key::new("controls", Shape::Named(&CONTROL), "what drives links, crowds and the parameters of their laws"),
         Key::new(
             "space",
             Shape::Choice(&["physical", "algorithmic"]),
@@ -309,8 +310,10 @@ pub struct LinkTable {
 
 /// A law between all masses that are near.
 pub struct CrowdSpec {
-    /// Of the force; by its number where `None`.
-    pub name: Option<String>,
+    /// What controls call it.
+    pub name: String,
+    /// Name of the force; by its number where `None`.
+    pub force: Option<String>,
     pub law: Option<Chosen<BuildLink>>,
     /// Names of groups: none, one or two.
     pub of: Vec<String>,
@@ -719,7 +722,8 @@ impl CrowdSpec {
         }
         let friction = reader.table("friction").map(|table| FrictionSpec::read(&table));
         Self {
-            name: None,
+            name: reader.text("name"),
+            force: None,
             law: reader.entry("law", &LINKS),
             of,
             kept_apart: Vec::new(),

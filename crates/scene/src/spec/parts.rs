@@ -476,6 +476,9 @@ impl<'a> Part<'a> {
         for reader in &self.crowds {
             let mut crowd = CrowdSpec::read(reader);
             self.name(&mut crowd.of, &reader.site_of("of"), log);
+            if !crowd.name.is_empty() {
+                crowd.name = self.full(&crowd.name);
+            }
             all.crowds.push(crowd);
         }
         for (_, part) in &self.parts {

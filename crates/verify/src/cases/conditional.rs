@@ -3,9 +3,9 @@
 use super::network::OSCILLATOR;
 use crate::{Case, Reading, Tolerance};
 
-const PULL: Reading = Reading::component("pull", 0);
+pub(super) const PULL: Reading = Reading::component("pull", 0);
 
-const WORDS: Case = Case {
+pub(super) const WORDS: Case = Case {
     capabilities: &["JIM-10"],
     scene: "rheometer",
     // places are decimals, rounding times k

@@ -41,6 +41,7 @@ mod skins;
 mod soft_cube;
 mod stepper_orders;
 mod strain_measures;
+mod switching;
 mod thick_sphere;
 mod tools;
 mod traction;
@@ -87,6 +88,7 @@ pub const TABLES: &[&[Case]] = &[
     characteristics::CASES,
     rheology::CASES,
     conditional::CASES,
+    switching::CASES,
     heat::CASES,
     material_fields::CASES,
     matter::CASES,

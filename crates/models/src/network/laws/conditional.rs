@@ -185,6 +185,11 @@ impl WrittenLaw for Conditional {
         false
     }
 
+    // what CHK and CHZ set from then on
+    fn begins_with(&self) -> &[&'static str] {
+        &["stiffness", "damping"]
+    }
+
     fn asks_for(&self) -> AsksFor {
         self.asks
     }

@@ -33,10 +33,13 @@ struct ElastoPlastic {
     hardening: Hardening,
 }
 
+/// `S`
 const REST: usize = 0;
+/// By how much `S1` and `S2` have grown: what the law has for thresholds may be driven.
 const TRACTION: usize = 1;
 const COMPRESSION: usize = 2;
-const TEARS: usize = 3;
+/// 1 once torn.
+const TORN: usize = 3;
 
 impl LinkLaw for ElastoPlastic {
     fn memory_len(&self) -> usize {
@@ -45,17 +48,19 @@ impl LinkLaw for ElastoPlastic {
 
     // what it begins beyond its thresholds has yielded before: the heat of that is none of the run's
     fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
-        let [traction, compression] = self.yields.map(|force| force / self.elastic);
-        let mut own = [rest, traction, compression, self.tears, 0.0];
+        let mut own = [rest, 0.0, 0.0, 0.0, 0.0];
         self.respond(&Reach { length, before: length, rest }, &mut own);
         memory.copy_from_slice(&own[..4]);
     }
 
     #[inline(always)]
     fn respond<R: Real>(&self, reach: &Reach<R>, memory: &mut [R; MEMORY]) -> Response<R> {
-        let [rest, s1, s2, s3, _] = *memory;
+        let [rest, grown1, grown2, torn, _] = *memory;
         let q = reach.length - rest;
         let (zero, c) = (q.zero(), 1.0 / self.elastic);
+        let [first1, first2] = self.yields.map(|force| force * c);
+        let (s1, s2) = (grown1 + first1, grown2 + first2);
+        let s3 = zero.select_less(torn, zero, q.splat(self.tears));
         // f = A S1 + B q,  A = C - B
         let beyond = |threshold: R| threshold * (self.elastic - self.plastic) + q * self.plastic;
         let (pulled, pushed) = (beyond(s1), beyond(s2));
@@ -73,9 +78,9 @@ impl LinkLaw for ElastoPlastic {
             }
         };
         memory[REST] = q.select_less(s3, moved, rest);
-        memory[TRACTION] = q.select_less(s3, next1, s1);
-        memory[COMPRESSION] = q.select_less(s3, next2, s2);
-        memory[TEARS] = q.select_less(s3, s3, zero);
+        memory[TRACTION] = q.select_less(s3, next1 - first1, grown1);
+        memory[COMPRESSION] = q.select_less(s3, next2 - first2, grown2);
+        memory[TORN] = q.select_less(s3, torn, q.splat(1.0));
         let slipped = memory[REST] - rest;
         Response { push: -force, stored: force * force * (0.5 * c), heat: force * slipped }
     }
@@ -84,12 +89,12 @@ impl LinkLaw for ElastoPlastic {
         false
     }
 
-    // torn, its threshold is zero; yielded, its rest length is another
+    // yielded, its rest length is another
     fn state(&self, rest: f64, memory: &[f64]) -> LinkState {
-        match (memory[TEARS] > 0.0, memory[REST] == rest) {
-            (false, _) => LinkState::Apart,
-            (true, true) => LinkState::In(0),
-            (true, false) => LinkState::In(1),
+        match (memory[TORN] > 0.0, memory[REST] == rest) {
+            (true, _) => LinkState::Apart,
+            (false, true) => LinkState::In(0),
+            (false, false) => LinkState::In(1),
         }
     }
 
@@ -197,7 +202,7 @@ mod tests {
             let found = -law.respond(&Reach { length, before, rest: 1.0 }, &mut memory).push;
             // lengths of a metre round to 2e-16 m, sixteen times over, in forces times 1000 N/m
             assert!((found - tension).abs() < 1e-12, "{found} N at {length} m");
-            for (found, expected) in memory.iter().zip([rest, traction, compression]) {
+            for (found, expected) in memory.iter().zip([rest, traction - 0.01, compression + 0.01]) {
                 assert!((found - expected).abs() < 1e-14, "{memory:?} at {length} m");
             }
             before = length;

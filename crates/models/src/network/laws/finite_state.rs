@@ -1,7 +1,8 @@
 //! Finite-state links: a law for each state, conditions that lead from one to the other, numbers that are remembered.
 //!
 //! At step `n` the transitions out of the present state are looked at in the order they are written; the last one whose
-//! condition holds wins. What is entered may set remembered numbers; then the force is that of the new state.
+//! condition holds wins. What is entered may set remembered numbers; then the force is that of the new state, whose own numbers
+//! may move on by a step: regimes and the switch between them, each with memory or without (specification §2.8.5).
 
 use souple_engine::LinkState;
 use souple_formal::{Condition, Formula};
@@ -16,7 +17,7 @@ use crate::network::written::{
 };
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
-const VARIABLES: [&str; 4] = ["D", "D_before", "V", "t"];
+const VARIABLES: [&str; 5] = ["D", "D_before", "V", "t", "Te"];
 
 #[derive(Debug)]
 struct FiniteState {
@@ -34,6 +35,12 @@ struct State {
     transitions: Vec<(Condition, usize)>,
     /// Remembered numbers that are set on entry.
     settings: Vec<(usize, Formula)>,
+    /// And in every step, after the force.
+    updates: Vec<(usize, Formula)>,
+    /// Stored [J].
+    energy: Option<Formula>,
+    /// Given off [W].
+    loss: Option<Formula>,
     /// `D` from which on nothing happens in this state: no push, and no condition that holds [m].
     idle_from: Option<f64>,
 }
@@ -42,7 +49,8 @@ impl State {
     /// Never any force.
     fn is_slack(&self) -> bool {
         let is_constant = !(0..self.push.variables().len()).any(|variable| self.push.depends_on(variable));
-        is_constant && self.push.evaluate(&[0.0; ARGUMENTS]) == 0.0
+        let moves_on = !self.updates.is_empty() || self.energy.is_some() || self.loss.is_some();
+        is_constant && self.push.evaluate(&[0.0; ARGUMENTS]) == 0.0 && !moves_on
     }
 
     /// Without force, for good.
@@ -58,7 +66,7 @@ impl FiniteState {
     /// Values of variables, remembered numbers and parameters.
     fn arguments(&self, reach: &Reach, time: f64, memory: &[f64]) -> Arguments<f64> {
         let speed = (reach.length - reach.before) / self.timestep;
-        let own = [reach.length, reach.before, speed, time];
+        let own = [reach.length, reach.before, speed, time, self.timestep];
         let rest = memory[1..].iter().chain(&self.constants).copied();
         Arguments::new(0.0, own.into_iter().chain(rest))
     }
@@ -115,8 +123,16 @@ impl WrittenLaw for FiniteState {
 
     fn respond(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response {
         let state = self.switch(reach, moment.time, memory);
-        let push = state.push.evaluate(self.arguments(reach, moment.time, memory).as_slice());
-        Response { push, stored: 0.0, heat: 0.0 }
+        let arguments = self.arguments(reach, moment.time, memory);
+        let of = |formula: &Formula| formula.evaluate(arguments.as_slice());
+        for (number, formula) in &state.updates {
+            memory[1 + number] = of(formula);
+        }
+        Response {
+            push: of(&state.push),
+            stored: state.energy.as_ref().map_or(0.0, of),
+            heat: state.loss.as_ref().map_or(0.0, |loss| of(loss) * self.timestep),
+        }
     }
 
     fn slopes(&self, reach: &Reach, moment: &Moment, memory: &[f64]) -> [f64; 2] {
@@ -159,7 +175,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
     parameters: &[
         Parameter::texts(
             "states",
-            "the push [N] in each state, of D, D_before, V, t, L0 and the names below; the first is that of the start",
+            "the push [N] in each state, of D, D_before, V, t, the step Te, L0 and the names below; the first is that of the start",
         ),
         Parameter::texts(
             "transitions",
@@ -167,6 +183,15 @@ pub const ENTRY: LinkEntry = LinkEntry {
         )
         .or(Value::Texts(&[])),
         Parameter::texts("entries", "what a state sets when it is entered: \"L0 = D; k = 0\"")
+            .or(Value::Texts(&[])),
+        Parameter::texts(
+            "updates",
+            "what a state sets in every step, from what was before: \"x = x + Te * V / 2\"",
+        )
+        .or(Value::Texts(&[])),
+        Parameter::texts("energies", "stored in a state [J], for the account; nothing where left out")
+            .or(Value::Texts(&[])),
+        Parameter::texts("losses", "given off in a state [W], for the account; nothing where left out")
             .or(Value::Texts(&[])),
         Parameter::texts(
             "memory",
@@ -201,7 +226,15 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     let state_names: Vec<&str> = texts("states").iter().map(|(name, _)| name.as_str()).collect();
     for (name, push) in texts("states") {
         let push = formula(&format!("states.{name}"), push, &variables)?;
-        states.push(State { push, transitions: Vec::new(), settings: Vec::new(), idle_from: None });
+        states.push(State {
+            push,
+            transitions: Vec::new(),
+            settings: Vec::new(),
+            updates: Vec::new(),
+            energy: None,
+            loss: None,
+            idle_from: None,
+        });
     }
     if states.is_empty() {
         return Err(text("states", "is empty: a link is in one state at least"));
@@ -231,19 +264,20 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
         let name = state_names[state];
         return Err(text(format!("states.{name}"), "is never entered: no transition leads there"));
     }
-    for (name, settings) in texts("entries") {
-        let place = format!("entries.{name}");
-        let state = find(&place, name)?;
-        for setting in settings.split(';').map(str::trim).filter(|setting| !setting.is_empty()) {
-            let (number, value) = setting
-                .split_once('=')
-                .ok_or_else(|| text(&place, format!("says `{setting}`: write \"L0 = D; k = 0\"")))?;
-            let number = remembered.iter().position(|known| *known == number.trim()).ok_or_else(|| {
-                text(&place, format!("sets `{}`; remembered are {}", number.trim(), remembered.join(", ")))
-            })?;
-            states[state]
-                .settings
-                .push((number, formula_within(&place, settings, value.trim(), &variables)?));
+    for (key, is_entry) in [("entries", true), ("updates", false)] {
+        for (name, settings) in texts(key) {
+            let place = format!("{key}.{name}");
+            let state = &mut states[find(&place, name)?];
+            let own = if is_entry { &mut state.settings } else { &mut state.updates };
+            own.extend(assignments(&place, settings, &remembered, &variables)?);
+        }
+    }
+    for (key, is_energy) in [("energies", true), ("losses", false)] {
+        for (name, said) in texts(key) {
+            let place = format!("{key}.{name}");
+            let (state, formula) = (find(&place, name)?, formula(&place, said, &variables)?);
+            let own = &mut states[state];
+            *(if is_energy { &mut own.energy } else { &mut own.loss }) = Some(formula);
         }
     }
     let unknowns = VARIABLES.len() + remembered.len();
@@ -263,6 +297,26 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
         starts.push(formula(&format!("memory.{name}"), start, &variables)?);
     }
     Ok(FiniteState { states, starts, constants, timestep: making.timestep })
+}
+
+/// What a text like `L0 = D; k = 0` sets of what is remembered.
+fn assignments(
+    place: &str,
+    settings: &str,
+    remembered: &[&str],
+    variables: &[&str],
+) -> Result<Vec<(usize, Formula)>, LinkError> {
+    let each = settings.split(';').map(str::trim).filter(|setting| !setting.is_empty());
+    each.map(|setting| {
+        let (number, value) = setting
+            .split_once('=')
+            .ok_or_else(|| text(place, format!("says `{setting}`: write \"L0 = D; k = 0\"")))?;
+        let number = remembered.iter().position(|known| *known == number.trim()).ok_or_else(|| {
+            text(place, format!("sets `{}`; remembered are {}", number.trim(), remembered.join(", ")))
+        })?;
+        Ok((number, formula_within(place, settings, value.trim(), variables)?))
+    })
+    .collect()
 }
 
 /// Arguments of which only the parameters are known.
@@ -290,7 +344,7 @@ fn check_that_all_fire(
 ) -> Result<(), LinkError> {
     let low = |name: &str| match name {
         "D" | "D_before" => least_length,
-        "t" => 0.0,
+        "t" | "Te" => 0.0,
         _ => f64::NEG_INFINITY,
     };
     let mut questions = Questions::new(variables, constants, low);

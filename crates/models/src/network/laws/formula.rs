@@ -87,7 +87,7 @@ impl WrittenLaw for Written {
         self.formula.variables()[VARIABLES.len()..].iter().map(String::as_str).collect()
     }
 
-    fn with_register(&self, register: usize, value: f64, _: f64) -> Option<Self> {
+    fn with_register(&self, register: usize, value: f64) -> Option<Self> {
         let mut law = self.clone();
         *law.constants.as_mut_slice().get_mut(register)? = value;
         Some(law)

@@ -5,14 +5,16 @@ use std::ops::Range;
 use souple_engine::{CONTROL_LEN, CommittedRows, Control};
 use souple_formal::{Condition, Formula};
 use souple_math::Vec3;
-use souple_models::network::{LinkKernel, REGISTERS, Wiring};
+use souple_models::network::{BuildLink, DRIVEN_PARAMETERS, DrivenLaw, LinkKernel, Recipe, Span, Wiring};
 
 use super::super::Draft;
 use super::super::bodies::Placed;
+use super::crowd_force;
 use crate::diagnostic::Code;
 use crate::keys::one_of;
+use crate::reader::Chosen;
 use crate::spec::Spec;
-use crate::spec::control::{ControlSpec, Drives, INPUTS, InputSpec, VARIABLES};
+use crate::spec::control::{ControlSpec, Driven, Drives, INPUTS, InputSpec, VARIABLES};
 use crate::spec::network::Network;
 
 /// Numbers that all controls of a scene keep in State.
@@ -27,51 +29,59 @@ fn first_driven(spec: &Spec, body: &Placed) -> usize {
     CONTROL_LEN * before.filter_map(|body| body.network.as_ref()).map(|n| n.controls.len()).sum::<usize>()
 }
 
-/// What controls drive of the links of a table of this name.
-pub fn wiring(draft: &Draft, body: &Placed, network: &Network, name: &str, law: &dyn LinkKernel) -> Wiring {
+/// A law as controls drive it, of links or crowds.
+pub fn driven(
+    draft: &Draft,
+    body: &Placed,
+    network: &Network,
+    of: Driven<&str>,
+    (law, chosen): (Box<dyn LinkKernel>, Option<&Chosen<BuildLink>>),
+    (timestep, span): (f64, Span),
+) -> DrivenLaw {
+    let Some(chosen) = chosen.filter(|_| network.controls.iter().any(|control| control.of.is(&of))) else {
+        return law.into();
+    };
+    let recipe = Recipe { entry: chosen.entry, values: chosen.values.clone(), timestep, span };
+    let wiring = wiring(draft, body, network, &of, &recipe.drivable(&*law));
+    DrivenLaw::new(law, recipe, &wiring)
+}
+
+/// What controls drive of a law with these numbers.
+fn wiring(draft: &Draft, body: &Placed, network: &Network, of: &Driven<&str>, drivable: &[String]) -> Wiring {
     let mut wiring = Wiring::default();
-    if name.is_empty() {
-        return wiring;
-    }
-    let first = first_driven(draft.spec, body);
-    let controls = network.controls.iter().enumerate().filter(|(_, control)| control.links == name);
-    for (index, control) in controls {
+    let (first, noun, name) = (first_driven(draft.spec, body), of.noun(), of.name());
+    for (index, control) in network.controls.iter().enumerate().filter(|(_, control)| control.of.is(of)) {
         let (slot, log) = (first + index * CONTROL_LEN, draft.log);
         let refuse =
             |message: String, expected: String| log.add(Code::Conflict, &control.site, message, expected);
         match &control.drives {
             Some(Drives::Connection { .. }) if wiring.gain.is_some() => {
-                let message = format!("two controls connect the links `{name}`");
+                let message = format!("two controls connect the {noun} `{name}`");
                 refuse(message, "one condition, joined with `and` or `or`".to_owned());
             }
             Some(Drives::Connection { .. }) => wiring.gain = Some(slot),
             Some(Drives::Parameter { name: parameter, .. }) => {
-                let known = law.registers();
-                match known.iter().position(|known| known == parameter) {
-                    None => {
-                        let message =
-                            format!("the law of the links `{name}` has no `{parameter}` that can be driven");
-                        let expected = match &known[..] {
-                            [] => "`connects`, which works on any law, or a law whose numbers can be driven: `spring_damper`, `ball`, \
-                                   or a `formula` with `parameters`"
-                                .to_owned(),
-                            known => one_of(known),
-                        };
-                        refuse(message, expected);
-                    }
-                    Some(register) if wiring.registers.iter().any(|(other, _)| *other == register) => {
-                        refuse(
-                            format!("two controls turn `{parameter}` of the links `{name}`"),
-                            "one".to_owned(),
-                        );
-                    }
-                    Some(_) if wiring.registers.len() == REGISTERS => {
-                        refuse(
-                            format!("{} parameters are driven", REGISTERS + 1),
-                            format!("at most {REGISTERS}"),
-                        );
-                    }
-                    Some(register) => wiring.registers.push((register, slot)),
+                if !drivable.contains(parameter) {
+                    let message =
+                        format!("the law of the {noun} `{name}` has no `{parameter}` that can be driven");
+                    let known: Vec<&str> = drivable.iter().map(String::as_str).collect();
+                    let expected = match &known[..] {
+                        [] => "`connects`, which works on any law: this one has no numbers".to_owned(),
+                        known => one_of(known),
+                    };
+                    refuse(message, expected);
+                } else if wiring.parameters.iter().any(|(other, _)| other == parameter) {
+                    refuse(
+                        format!("two controls turn `{parameter}` of the {noun} `{name}`"),
+                        "one".to_owned(),
+                    );
+                } else if wiring.parameters.len() == DRIVEN_PARAMETERS {
+                    refuse(
+                        format!("{} parameters are driven", DRIVEN_PARAMETERS + 1),
+                        format!("at most {DRIVEN_PARAMETERS}"),
+                    );
+                } else {
+                    wiring.parameters.push((parameter.clone(), slot));
                 }
             }
             None => {}
@@ -106,18 +116,33 @@ fn control(
     spec: &ControlSpec,
     driven: usize,
 ) -> Option<(Written, f64)> {
-    let is_driven = |index: &usize| network.links[body.links[*index].table].name == spec.links;
-    let tables: Vec<usize> = (0..body.links.len()).filter(is_driven).collect();
-    if tables.is_empty() {
-        let named = network.links.iter().map(|table| table.name.as_str()).filter(|name| !name.is_empty());
-        let known: Vec<&str> = named.collect();
-        let message = format!("there are no links `{}`", spec.links);
-        draft.log.add(
-            Code::UnknownName,
-            &spec.site,
-            message,
-            format!("the `name` of links: {}", one_of(&known)),
-        );
+    let laws: Vec<(String, &Option<Chosen<BuildLink>>)> = match &spec.of {
+        Driven::Links(name) => (body.links.iter().enumerate())
+            .map(|(index, links)| (index, &network.links[links.table]))
+            .filter(|(_, table)| !name.is_empty() && table.name == *name)
+            .map(|(index, table)| (format!("{}.links[{index}]", body.spec.name), &table.law))
+            .collect(),
+        Driven::Crowds(name) => (network.crowds.iter().enumerate())
+            .filter(|(_, crowd)| !name.is_empty() && crowd.name == *name)
+            .map(|(index, crowd)| (crowd_force(crowd, index, &body.spec.name), &crowd.law))
+            .collect(),
+    };
+    if laws.is_empty() {
+        let (noun, name) = (spec.of.noun(), spec.of.name());
+        let named = match &spec.of {
+            Driven::Links(_) => network.links.iter().map(|table| table.name.as_str()).collect::<Vec<_>>(),
+            Driven::Crowds(_) => network.crowds.iter().map(|crowd| crowd.name.as_str()).collect(),
+        };
+        let known: Vec<&str> = named.into_iter().filter(|name| !name.is_empty()).collect();
+        // what is not named at all is said where it is read
+        if !name.is_empty() {
+            draft.log.add(
+                Code::UnknownName,
+                &spec.site,
+                format!("there are no {noun} `{name}`"),
+                format!("the `name` of {noun}: {}", one_of(&known)),
+            );
+        }
         return None;
     }
     let inputs: Vec<Input> =
@@ -125,7 +150,7 @@ fn control(
     let (rule, start) = match spec.drives.as_ref()? {
         Drives::Connection { holds, ramp } => (Rule::Connection { holds: holds.clone(), ramp: *ramp }, 1.0),
         Drives::Parameter { name, value } => {
-            let law = network.links[body.links[tables[0]].table].law.as_ref()?;
+            let law = laws[0].1.as_ref()?;
             let start = match law.values.get(name) {
                 Some(souple_table::Value::Number(number)) => number,
                 // a parameter of a written law: from the first value on
@@ -135,7 +160,7 @@ fn control(
         }
     };
     let name = format!("{}.{}", body.spec.name, spec.name);
-    let forces = tables.iter().map(|index| format!("{}.links[{index}]", body.spec.name)).collect();
+    let forces = laws.into_iter().map(|(force, _)| force).collect();
     let control = Written { name, system: body.system, forces, driven, rule, inputs };
     let start = if start.is_finite() { start } else { control.first(&body.mesh.points, body.rows.start) };
     if !start.is_finite() {

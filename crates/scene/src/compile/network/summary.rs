@@ -4,6 +4,7 @@ use souple_models::network::{Crowd, Links, ViewedLinks};
 use souple_table::Value;
 
 use super::super::Draft;
+use super::crowd_force;
 use crate::spec::network::{Filled, MassGroup, Places};
 use crate::spec::units::from_algorithmic;
 
@@ -135,8 +136,7 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
             };
             let crowds = network.crowds.iter().enumerate().filter_map(|(index, crowd)| {
                 let law = crowd.law.as_ref()?;
-                let force =
-                    crowd.name.clone().unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name));
+                let force = crowd_force(crowd, index, &body.spec.name);
                 let of = system.forces.iter().find(|known| known.name() == force);
                 let of = of.and_then(|known| known.as_any().downcast_ref::<Crowd>());
                 Some(LawInfo {

@@ -44,6 +44,7 @@ pub(super) static ENCOUNTER: Keys = Keys::new(
     "what objects do to each other where they meet, every two of those named",
     &[
         Key::new("law", Shape::Entry(LINK), "between masses of the layers that meet").required(),
+        Key::new("name", Shape::Text, "what controls call the crowds of it"),
         Key::new(
             "of",
             Shape::Texts,
@@ -122,7 +123,8 @@ pub(super) fn crowds(network: &str, groups: &[&str], reader: &Reader) -> Vec<Cro
                     "both layers that it is between",
                 );
             }
-            let law = Between { law, range: None, friction: None, site: table.site_of(key) };
+            let law =
+                Between { name: String::new(), law, range: None, friction: None, site: table.site_of(key) };
             let named = |[a, b]: [&String; 2]| law.of(format!("{network}.{name}.{key}"), a, b);
             crowds.extend(numbered(pairs.into_iter().map(named).collect()));
         }
@@ -160,6 +162,7 @@ fn encounter(name: &str, table: &Reader, objects: &[Object]) -> Vec<CrowdSpec> {
         table.log().add(Code::Conflict, &table.site(), message, "objects, or groups of masses, in `of`");
     }
     let law = Between {
+        name: table.text("name"),
         law,
         range: table.maybe_number("range"),
         friction: table.table("friction").map(|friction| FrictionSpec::read(&friction)),
@@ -192,7 +195,7 @@ fn between<'a>(first: &'a [String], second: &'a [String]) -> Vec<[&'a String; 2]
 fn numbered(mut crowds: Vec<CrowdSpec>) -> Vec<CrowdSpec> {
     if crowds.len() > 1 {
         for (index, crowd) in crowds.iter_mut().enumerate() {
-            crowd.name = crowd.name.as_ref().map(|name| format!("{name}[{index}]"));
+            crowd.force = crowd.force.as_ref().map(|name| format!("{name}[{index}]"));
         }
     }
     crowds
@@ -200,6 +203,8 @@ fn numbered(mut crowds: Vec<CrowdSpec>) -> Vec<CrowdSpec> {
 
 /// A law between groups.
 struct Between {
+    /// What controls call it.
+    name: String,
     law: Chosen<BuildLink>,
     /// [m]
     range: Option<f64>,
@@ -208,10 +213,11 @@ struct Between {
 }
 
 impl Between {
-    fn of(&self, name: String, a: &str, b: &str) -> CrowdSpec {
+    fn of(&self, force: String, a: &str, b: &str) -> CrowdSpec {
         let of = if a == b { vec![a.to_owned()] } else { vec![a.to_owned(), b.to_owned()] };
         CrowdSpec {
-            name: Some(name),
+            name: self.name.clone(),
+            force: Some(force),
             law: Some(self.law.clone()),
             of,
             kept_apart: Vec::new(),
