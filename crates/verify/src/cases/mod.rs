@@ -55,6 +55,7 @@ pub use octree::STRUCK as STRUCK_ROD;
 pub const TABLES: &[&[Case]] = &[
     patch::CASES,
     traction::CASES,
+    traction::RESOLUTIONS,
     rubber::CASES,
     thick_sphere::CASES,
     filling::CASES,

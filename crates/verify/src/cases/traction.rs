@@ -66,6 +66,69 @@ macro_rules! pad {
 
 const ST_VENANT_KIRCHHOFF: &[&str] = &[r#"bodies.bar.material.name="st_venant_kirchhoff""#];
 
+/// Every resolution of EXP-14, from 40 cells to 320, with each of its moduli: a bar of hexahedra under either law, and a slice that can
+/// not grow thicker, of triangles and of quadrilaterals.
+macro_rules! resolutions {
+    ($($count:literal: $cells:literal, $along:literal $across:literal;)+) => {
+        &[$(
+            resolutions!(@bar $count $cells "linear" "hooke" "1" 2000.0),
+            resolutions!(@bar $count $cells "linear" "hooke" "2" 4000.0),
+            resolutions!(@bar $count $cells "linear" "hooke" "3" 6000.0),
+            resolutions!(@bar $count $cells "st_venant_kirchhoff" "stvk" "1" 2000.0 * 1.076_25),
+            resolutions!(@bar $count $cells "st_venant_kirchhoff" "stvk" "2" 4000.0 * 1.076_25),
+            resolutions!(@bar $count $cells "st_venant_kirchhoff" "stvk" "3" 6000.0 * 1.076_25),
+            resolutions!(@slice $count $along $across "tri3" "1" 2000.0),
+            resolutions!(@slice $count $along $across "tri3" "2" 4000.0),
+            resolutions!(@slice $count $along $across "tri3" "3" 6000.0),
+            resolutions!(@slice $count $along $across "quad4" "1" 2000.0),
+            resolutions!(@slice $count $along $across "quad4" "2" 4000.0),
+            resolutions!(@slice $count $along $across "quad4" "3" 6000.0),
+        )+]
+    };
+    (@bar $count:literal $cells:literal $law:literal $short:literal $modulus:literal $pull:expr) => {
+        Case {
+            id: concat!("exp14_", $short, "_", $count, "_", $modulus, "mpa"),
+            what: concat!("pull of the stretched bar, ", $law, ", ", $modulus, " MPa, ", $count, " cells"),
+            settings: &[
+                concat!("bodies.bar.mesh.cells=", $cells),
+                concat!("bodies.bar.material.name=\"", $law, "\""),
+                concat!("bodies.bar.material.youngs_modulus=\"", $modulus, " MPa\""),
+            ],
+            reference: $pull,
+            ..PULL
+        }
+    };
+    (@slice $count:literal $along:literal $across:literal $element:literal $modulus:literal $pull:expr) => {
+        Case {
+            id: concat!("exp14_plane_", $element, "_", $count, "_", $modulus, "mpa"),
+            what: concat!("the same of a slice of ", $element, ", ", $along, " by ", $across, ", ", $modulus, " MPa, plane strain"),
+            settings: &[
+                concat!("bodies.plate.mesh={ generate = \"sheet\", length = 1.2, width = 0.2, cells_along = ", $along, ", cells_across = ", $across, ", element = \"", $element, "\" }"),
+                r#"bodies.plate.section={ name = "plane_strain", thickness = 0.2 }"#,
+                concat!("bodies.plate.material={ name = \"linear\", youngs_modulus = \"", $modulus, " MPa\", poissons_ratio = 0.2, density = 800 }"),
+            ],
+            reference: $pull / 0.96,
+            ..SLICE
+        }
+    };
+}
+
+/// What cannot grow thicker is stiffer by `1 / (1 - ν²)`.
+const SLICE: Case = Case {
+    capabilities: &["FAU-72", "FAU-1"],
+    scene: "plate",
+    source: "uniform strain; specification, EXP-14: 1.0417 of the modulus in plane strain",
+    mutation: "bodies.plate.material.poissons_ratio=0.2001",
+    ..PULL
+};
+
+pub(super) const RESOLUTIONS: &[Case] = resolutions! {
+    "40": "[10, 2, 2]", "10" "2";
+    "80": "[20, 2, 2]", "20" "2";
+    "162": "[18, 3, 3]", "18" "3";
+    "320": "[20, 4, 4]", "20" "4";
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "volume_lambda_0",
