@@ -142,6 +142,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("two_contours", include_str!("../../../scenes/two_contours/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
     ("two_slopes", include_str!("../../../scenes/two_slopes/scene.toml")),
+    ("two_steppers", include_str!("../../../scenes/two_steppers/scene.toml")),
     ("vibrating_modes", include_str!("../../../scenes/vibrating_modes/scene.toml")),
     ("voronoi_corner", include_str!("../../../scenes/voronoi_corner/scene.toml")),
     ("wall_cube", include_str!("../../../scenes/wall_cube/scene.toml")),

@@ -39,12 +39,14 @@ mod rheometer;
 mod rubber;
 mod skins;
 mod soft_cube;
+mod step_limits;
 mod stepper_orders;
 mod strain_measures;
 mod switching;
 mod thick_sphere;
 mod tools;
 mod traction;
+mod two_steppers;
 mod views;
 mod wall_cube;
 
@@ -74,6 +76,11 @@ pub const TABLES: &[&[Case]] = &[
     implicit::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
+    two_steppers::CASES,
+    two_steppers::ONE_LINEARISATION,
+    two_steppers::EXPLICIT_STEPS,
+    step_limits::CASES,
+    step_limits::EXPLICIT_LIMITS,
     long_beam::CASES,
     mixed_models::CASES,
     adaptive::CASES,
