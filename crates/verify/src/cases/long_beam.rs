@@ -27,6 +27,12 @@ const GAP: Case = Case {
     ..BEAM
 };
 
+const UNIFORM_BEAM: Case = Case {
+    source: "specification, EXP-27 oracle with uniform nodal mass",
+    mutation: r#"bodies.bar.mass="lumped""#,
+    ..BEAM
+};
+
 /// The same against what the source has tabulated of its own tetrahedra.
 const SOURCE_GAP: Case = Case {
     tolerance: Tolerance::Relative(0.25),
@@ -434,6 +440,30 @@ pub(super) const CASES: &[Case] = &[
         settings: beam!("tet4", "[56, 7, 7]",),
         reference: 0.0105572,
         ..SOURCE_GAP
+    },
+    Case {
+        id: "exp27_uniform_48",
+        capabilities: &["FAU-47", "FAU-73"],
+        what: "tip of the long beam of 3072 hexahedra with the same mass at every node, which weighs more at its end",
+        settings: beam!("hex8", "[48, 8, 8]", r#"bodies.bar.mass="uniform""#),
+        reference: -0.60329,
+        ..UNIFORM_BEAM
+    },
+    Case {
+        id: "exp27_gap_uniform_48",
+        capabilities: &["FAU-47", "FAU-73"],
+        what: "its mean distance from the bending curve",
+        settings: beam!("hex8", "[48, 8, 8]", r#"bodies.bar.mass="uniform""#),
+        reference: 0.00179,
+        mutation: UNIFORM_BEAM.mutation,
+        ..GAP
+    },
+    Case {
+        id: "exp27_hex8_320",
+        what: "tip of the long beam of 320 hexahedra along it and 4 across, near the limit",
+        settings: beam!("hex8", "[320, 4, 4]",),
+        reference: -0.60704,
+        ..BEAM
     },
     Case {
         id: "exp27_order_hex8",
