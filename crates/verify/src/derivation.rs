@@ -18,10 +18,14 @@ use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
 pub enum Count {
     /// Grouped constants of the energy, added up over its fragments.
     Constants,
+    /// The same of the fragment that has most of them.
+    MostConstants,
     /// Constants of an element that forces and differential read, as bodies run them.
     StepConstants,
     /// Fragments of the differential.
     Fragments,
+    /// Fragments of the forces.
+    ForceFragments,
     /// Operations of the differential at every step, written out in numbers.
     DifferentialOperations,
     /// The same over those on another element; settings, apart by spaces, that make it another.
@@ -154,7 +158,12 @@ pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
         Count::Constants => {
             settings.derived()?.energies.iter().map(|fragment| fragment.grouped.constants.len()).sum()
         }
+        Count::MostConstants => {
+            let derived = settings.derived()?;
+            derived.energies.iter().map(|fragment| fragment.grouped.constants.len()).max().unwrap_or(0)
+        }
         Count::Fragments => settings.derived()?.differentials.len(),
+        Count::ForceFragments => settings.derived()?.forces.len(),
         Count::DifferentialOperations => settings.differential_operations()?,
         Count::StepConstants => {
             let places = settings.steps()?.constant_places();

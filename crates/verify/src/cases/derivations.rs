@@ -95,6 +95,15 @@ const FOUR_LOOPS: Case = Case {
     ..DERIVED
 };
 
+/// Lines of the source's table of conversions: both sides of each are one expression.
+const CONVERTED: Case = Case {
+    capabilities: &["FAU-19", "FAU-20", "FAU-21"],
+    reading: Reading::Derived(Count::ConstantsOfFormula),
+    reference: 1.0,
+    source: "Faure 2014, §3.4.2; specification, 2.11.2 and EXP-7",
+    ..DERIVED
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "exp2_tri3_hooke",
@@ -213,6 +222,17 @@ pub(super) const CASES: &[Case] = &[
         ..DERIVED
     },
     Case {
+        id: "exp3_hex8_27_forces",
+        capabilities: &["FAU-24", "FAU-25"],
+        what: "fragments of the forces of that hexahedron, cut along law and Gauss points: two for each sample",
+        settings: &["law=st_venant_kirchhoff", "element=hex8", "rule=gauss_27", "map=box", "cut=LG"],
+        reading: Reading::Derived(Count::ForceFragments),
+        reference: 2.0 * 27.0,
+        source: "Faure 2014, p. 76; specification, EXP-3",
+        mutation: "cut=L",
+        ..DERIVED
+    },
+    Case {
         id: "exp2_hex8_box_hooke",
         capabilities: &["FAU-4", "FAU-22"],
         what: "the same of a box under Hooke's law",
@@ -246,6 +266,50 @@ pub(super) const CASES: &[Case] = &[
         mutation: "cut=none",
         ..DERIVED
     },
+    Case {
+        id: "exp2_tri3_terms_each",
+        capabilities: &["FAU-22", "FAU-24"],
+        what: "the same of the term that has most: five in either",
+        settings: &[STVK, "element=tri3", "cut=L"],
+        reading: Reading::Derived(Count::MostConstants),
+        reference: 5.0,
+        mutation: "cut=none",
+        ..DERIVED
+    },
+    Case {
+        id: "exp2_tet4_terms_each",
+        capabilities: &["FAU-22", "FAU-24"],
+        what: "the same of a tetrahedron: ten in either",
+        settings: &[STVK, "element=tet4", "cut=L"],
+        reading: Reading::Derived(Count::MostConstants),
+        reference: 10.0,
+        mutation: "cut=none",
+        ..DERIVED
+    },
+    row_within(
+        55.0,
+        152.0,
+        Case {
+            id: "exp2_pyramid5_cut",
+            capabilities: &["FAU-22", "FAU-24"],
+            what: "grouped constants of a pyramid cut along law and Gauss points: more than uncut, no more than the source's 152",
+            settings: &[STVK, "element=pyramid5", "rule=gauss_5", "cut=LG"],
+            mutation: "rule=gauss_8",
+            ..DERIVED
+        },
+    ),
+    row_within(
+        5.0,
+        92.0,
+        Case {
+            id: "exp2_hex8_box_cut",
+            capabilities: &["FAU-22", "FAU-24"],
+            what: "grouped constants of a box cut along Gauss points: more than uncut, no more than the source's 92",
+            settings: &[STVK, "element=hex8", "rule=gauss_8", "map=box", "cut=G"],
+            mutation: "rule=gauss_27",
+            ..DERIVED
+        },
+    ),
     row_within(
         66.0,
         192.0,
@@ -313,6 +377,27 @@ pub(super) const CASES: &[Case] = &[
         source: "Faure 2014, Fig 3.15 to 3.18; specification, EXP-7",
         mutation: "varying=p0",
         ..DERIVED
+    },
+    Case {
+        id: "exp7_difference",
+        what: "constants of (a - (b + c)) x + (-(c + b) + a) y: one, for a difference is a sum in any order",
+        settings: &["group=(a - (b + c))*x + (-(c + b) + a)*y", "varying=x", "varying=y"],
+        mutation: "group=(a - (b + c))*x + (-(c - b) + a)*y",
+        ..CONVERTED
+    },
+    Case {
+        id: "exp7_quotient",
+        what: "constants of (a + b)/(a - b) x + (a - b)^-1 (b + a) y: one, for a quotient is a product with an inverse",
+        settings: &["group=(a + b)/(a - b)*x + (a - b)^(-1)*(b + a)*y", "varying=x", "varying=y"],
+        mutation: "group=(a + b)/(a - b)*x + (b - a)^(-1)*(b + a)*y",
+        ..CONVERTED
+    },
+    Case {
+        id: "exp7_power",
+        what: "constants of 2 (a + b)^2 x + (b + a)^2 2 y: one, for a power is of its sum in any order",
+        settings: &["group=2*(a + b)^2*x + (b + a)^2*2*y", "varying=x", "varying=y"],
+        mutation: "group=2*(a + b)^2*x + (b + a)^3*2*y",
+        ..CONVERTED
     },
     Case {
         id: "exp7_conversion",
