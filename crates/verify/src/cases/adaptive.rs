@@ -77,6 +77,18 @@ macro_rules! threshold {
 /// What is off falls with the threshold: an order above nothing.
 const FALLS: Case = Case { reference: 0.0, tolerance: Tolerance::Above, mutation: SAME_THRESHOLD, ..BAR };
 
+/// What keeps the first law falls with the threshold.
+const SHARE: Case = Case {
+    reading: Reading::last("second_law"),
+    source: "specification, EXP-35: a lower threshold changes more elements",
+    ..FALLS
+};
+
+const PAD_THRESHOLDS: &[Variant] = &[
+    Variant { size: 0.12, settings: &["bodies.pad.adapt.edge_length=0.12"] },
+    Variant { size: 0.06, settings: &["bodies.pad.adapt.edge_length=0.06"] },
+];
+
 /// One criterion at one threshold in all runs, whose numbers are one then.
 const SAME_THRESHOLD: &str = "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, back = 0, volume = 0.03 }";
 
@@ -515,5 +527,74 @@ pub(super) const CASES: &[Case] = &[
         }),
         source: "specification, EXP-35: a lower threshold changes more elements",
         ..FALLS
+    },
+    Case {
+        id: "exp35_share_volume",
+        capabilities: &["FAU-62", "FAU-65"],
+        what: "the same with changes of volume of 6 % and of 3 %",
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: &[threshold!(0.06, "volume = 0.06"), threshold!(0.03, "volume = 0.03")],
+            limit: Limit::Known(1.0),
+        }),
+        ..SHARE
+    },
+    Case {
+        id: "exp35_share_shape",
+        capabilities: &["FAU-63", "FAU-65"],
+        what: "the same with growth of the shape factors of faces",
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: &[threshold!(0.004, "shape = 0.004"), threshold!(0.002, "shape = 0.002")],
+            limit: Limit::Known(1.0),
+        }),
+        ..SHARE
+    },
+    Case {
+        id: "exp35_share_force",
+        capabilities: &["FAU-64", "FAU-65"],
+        what: "the same with the field of nodal forces",
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: &[threshold!(5.0, "force = 5"), threshold!(2.0, "force = 2")],
+            limit: Limit::Known(1.0),
+        }),
+        ..SHARE
+    },
+    Case {
+        id: "exp35_pulled_share",
+        what: "how the share of the pulled pad that keeps the first law falls with the threshold, changes of length of 12 % and of 6 %",
+        scene: "pulled_pad",
+        refinement: Some(Refinement { size_of: "threshold", runs: PAD_THRESHOLDS, limit: Limit::Known(1.0) }),
+        mutation: "bodies.pad.adapt.edge_length=0.1",
+        reading: SHARE.reading.after(500),
+        ..SHARE
+    },
+    Case {
+        id: "exp35_pressed_share",
+        what: "the same of the pressed pad",
+        scene: "pressed_pad",
+        refinement: Some(Refinement { size_of: "threshold", runs: PAD_THRESHOLDS, limit: Limit::Known(1.0) }),
+        mutation: "bodies.pad.adapt.edge_length=0.1",
+        reading: SHARE.reading.after(500),
+        ..SHARE
+    },
+    Case {
+        id: "exp35_pressed_falls",
+        what: "how the deviation of the force on the press falls with the threshold, 15 % and 10 %",
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: &[
+                Variant { size: 0.15, settings: &["bodies.pad.adapt.edge_length=0.15"] },
+                Variant { size: 0.1, settings: &["bodies.pad.adapt.edge_length=0.1"] },
+            ],
+            limit: Limit::Known(PRESS_OF_SECOND),
+        }),
+        // in proportion to the threshold
+        reference: 1.0,
+        tolerance: Tolerance::AtLeast,
+        source: "specification, EXP-35: a lower threshold, a smaller deviation",
+        mutation: "bodies.pad.adapt.edge_length=0.12",
+        ..PAD
     },
 ];
