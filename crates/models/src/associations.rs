@@ -1,7 +1,6 @@
 //! Every association of a law, an element with a rule of quadrature, and a cut: what the derivation can be asked for.
 
 use souple_formal::element::Cut;
-use souple_formal::law::EnergyLaw;
 use souple_mesh::{ElementKind, QuadratureRule};
 
 use crate::derive::{source_law_name, source_name};
@@ -22,19 +21,10 @@ pub fn variants() -> impl Iterator<Item = (ElementKind, &'static QuadratureRule)
     kinds.flat_map(|kind| kind.rules().iter().map(move |rule| (kind, rule)))
 }
 
-/// The laws that can be written out on an element: principal stretches have no formula.
-pub fn written_out() -> impl Iterator<Item = &'static WrittenLaw> {
-    let has_formula = |law: &&WrittenLaw| {
-        let compiled = law.text().ok().and_then(|text| EnergyLaw::compile(&text).ok());
-        compiled.is_some_and(|law| !law.uses_stretches())
-    };
-    WRITTEN_LAWS.iter().filter(has_formula)
-}
-
 impl Association {
-    /// All of them.
+    /// All of them; laws of principal stretches are derived in tensors alone.
     pub fn all() -> impl Iterator<Item = Self> {
-        written_out().flat_map(move |law| {
+        WRITTEN_LAWS.iter().flat_map(|law| {
             variants()
                 .flat_map(move |(kind, rule)| Cut::every().map(move |cut| Self { law, kind, rule, cut }))
         })
