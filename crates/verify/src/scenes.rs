@@ -98,6 +98,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("pulled_pad", include_str!("../../../scenes/pulled_pad/scene.toml")),
     ("pumped_block", include_str!("../../../scenes/pumped_block/scene.toml")),
     ("puppet", include_str!("../../../scenes/puppet/scene.toml")),
+    ("rattle", include_str!("../../../scenes/rattle/scene.toml")),
     ("rheometer", include_str!("../../../scenes/rheometer/scene.toml")),
     ("rubber_as_text", include_str!("../../../scenes/rubber_as_text/scene.toml")),
     ("rubber_pulled", include_str!("../../../scenes/rubber_pulled/scene.toml")),

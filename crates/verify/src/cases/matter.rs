@@ -181,6 +181,21 @@ pub(super) const CASES: &[Case] = &[
         ..AGGLOMERATE
     },
     Case {
+        id: "contours_agree_back",
+        capabilities: &["JIM-42", "JIM-43"],
+        what: "and how far the frontier is from the trace, of balls in rows, between which there is no room that only the frontier tells",
+        scene: "two_contours",
+        settings: &[
+            "networks.block.masses.balls={ lattice = { origin = [-2.5, 0, -1.5], spacing = 1, counts = [6, 1, 4] }, mass = 1 }",
+        ],
+        reading: Reading::last("apart_back"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.2),
+        source: "EXP-48: both agree within 0.2 S",
+        mutation: "networks.block.contours.trace.radius=1.2",
+        ..AGGLOMERATE
+    },
+    Case {
         id: "stack_stands",
         what: "how far the uppermost of five bricks is in a minute from where geometry has it, in any direction, where each lies a centimetre beside the one below",
         reading: Reading::last("astray"),
@@ -567,6 +582,20 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["JIM-33", "JIM-36"],
         what: "height of a fruit on stones that only its peel meets, as it is where all its layers meet them",
         scene: "fruit",
+        reading: Reading::last("height").after(50),
+        reference: 0.621_127,
+        // as it is written here
+        tolerance: Tolerance::Relative(1e-5),
+        source: "EXP-60: the same outer motion with layers = \"all\"",
+        mutation: "networks.scene.encounters[0].law.stiffness=1000",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "all_layers_fall_alike",
+        capabilities: &["JIM-33", "JIM-36"],
+        what: "height of the same fruit where all its layers meet the stones",
+        scene: "fruit",
+        settings: &["networks.scene.encounters[0].layers=all"],
         reading: Reading::last("height").after(50),
         reference: 0.621_127,
         // as it is written here

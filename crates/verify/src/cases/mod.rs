@@ -7,6 +7,7 @@ mod cantilevers;
 mod characteristics;
 mod conditional;
 mod contact;
+mod courses;
 mod derivations;
 mod elements;
 mod energy;
@@ -92,9 +93,20 @@ pub const TABLES: &[&[Case]] = &[
     strain_measures::CASES,
     contact::CASES,
     network::CASES,
+    network::STOPS.as_flattened(),
+    network::RATTLE.as_flattened(),
     rheometer::CASES,
     characteristics::CASES,
+    courses::MULTI_LINEAR,
+    courses::MULTI_LINEAR_AT_ZERO,
+    courses::COHESION,
+    courses::COHESION_ENDS,
+    courses::STIFFNESS_AT_REST,
+    courses::REMEMBERS,
+    courses::RIGID_PLASTICITY,
+    courses::CASES,
     rheology::CASES,
+    rheology::TREES.as_flattened(),
     conditional::CASES,
     switching::CASES,
     heat::CASES,

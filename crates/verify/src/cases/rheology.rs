@@ -18,6 +18,74 @@ const COMPILED: Case = Case {
     ..OSCILLATOR
 };
 
+/// A tree of springs and dampers that chance made, pulled by 20 mm in 100 ms and held: by its own recursion, and by its own exponentials
+/// as steps get finer.
+macro_rules! tree_of_chance {
+    ($number:literal, $network:literal, $other:literal: $recursion:literal, $continuous:literal) => {
+        [
+            Case {
+                id: concat!("tree_of_chance_", $number),
+                what: concat!("a tree of springs and dampers that chance made, pulled by 20 mm in 100 ms and held for 60: ", $network),
+                settings: &[
+                    r#"world.period="1 ms""#,
+                    concat!(r#"networks.sample.links[0].law={ name = "rheological", network = ""#, $network, r#"" }"#),
+                    PULLED_AND_HELD,
+                ],
+                reading: PULL.after(160),
+                reference: $recursion,
+                source: "EXP-45: spring k, damper (z/Te)(1 - T⁻¹), sums beside and in series of fractions of polynomials, and their recursion in fifty digits",
+                mutation: concat!(r#"networks.sample.links[0].law.network=""#, $other, r#"""#),
+                ..COMPILED
+            },
+            Case {
+                id: concat!("tree_of_chance_order_", $number),
+                what: concat!("order at which the same tends to the sum of its exponentials: ", $network),
+                settings: &[
+                    concat!(r#"networks.sample.links[0].law={ name = "rheological", network = ""#, $network, r#"" }"#),
+                    PULLED_AND_HELD,
+                ],
+                refinement: Some(Refinement {
+                    size_of: "step [s]",
+                    runs: &[
+                        Variant { size: 4e-4, settings: &[r#"world.period="0.4 ms""#] },
+                        Variant { size: 2e-4, settings: &[r#"world.period="0.2 ms""#] },
+                        Variant { size: 1e-4, settings: &[r#"world.period="0.1 ms""#] },
+                    ],
+                    limit: Limit::Known($continuous),
+                }),
+                reference: 1.0,
+                // the next term: a step is a hundredth of the shortest relaxation
+                tolerance: Tolerance::Absolute(0.01),
+                source: "EXP-45: equal to the fine-step solution, error in proportion to Te; poles and residues of the tree in fifty digits",
+                mutation: concat!(r#"networks.sample.links[0].law.network=""#, $other, r#"""#),
+                ..COMPILED
+            },
+        ]
+    };
+}
+
+const PULLED_AND_HELD: &str =
+    "networks.sample.pins[0].motion={ times = [0, 0.1], offsets = [[0, 0, 0], [-0.02, 0, 0]] }";
+
+pub(super) const TREES: &[[Case; 2]] = &[
+    tree_of_chance!(1,
+        "((damper(70) | (damper(110) - (spring(300) - spring(1600)))) - damper(90)) - spring(1400)",
+        "((damper(71) | (damper(110) - (spring(300) - spring(1600)))) - damper(90)) - spring(1400)":
+        1.974_075_050_480_704_3, 1.946_825_141_416_102),
+    tree_of_chance!(2,
+        "(damper(30) - spring(1100)) | ((damper(60) - spring(200)) - damper(50))",
+        "(damper(30) - spring(1100)) | ((damper(61) - spring(200)) - damper(50))":
+        2.496_696_652_795_409_3, 2.473_474_143_641_031),
+    tree_of_chance!(3,
+        "(damper(40) | ((damper(110) - spring(1100)) | spring(800))) - spring(400)",
+        "(damper(40) | ((damper(110) - spring(1100)) | spring(801))) - spring(400)":
+        6.235_387_058_782_856, 6.235_931_898_460_937),
+    tree_of_chance!(4,
+        "(spring(1100) - damper(50)) - (((spring(1800) | damper(70)) | spring(1800)) | (spring(300) | (spring(500) - damper(110))))",
+        "(spring(1100) - damper(51)) - (((spring(1800) | damper(70)) | spring(1800)) | (spring(300) | (spring(500) - damper(110))))":
+        2.759_626_615_319_751, 2.744_929_941_817_061),
+];
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "rheological_maxwell",
