@@ -95,6 +95,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("plate", include_str!("../../../scenes/plate/scene.toml")),
     ("pressed_block", include_str!("../../../scenes/pressed_block/scene.toml")),
     ("pressed_pad", include_str!("../../../scenes/pressed_pad/scene.toml")),
+    ("pressed_sample", include_str!("../../../scenes/pressed_sample/scene.toml")),
     ("pulled_pad", include_str!("../../../scenes/pulled_pad/scene.toml")),
     ("pumped_block", include_str!("../../../scenes/pumped_block/scene.toml")),
     ("puppet", include_str!("../../../scenes/puppet/scene.toml")),

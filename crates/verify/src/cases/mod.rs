@@ -113,6 +113,8 @@ pub const TABLES: &[&[Case]] = &[
     material_fields::CASES,
     matter::CASES,
     plastic_bodies::CASES,
+    plastic_bodies::BLOCKS,
+    plastic_bodies::SAMPLES,
     material_tests::CASES,
     views::CASES,
     frames::CASES,

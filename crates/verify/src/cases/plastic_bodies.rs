@@ -42,6 +42,221 @@ const PLASTIC: &str =
 
 const ELASTIC_RIM: &str = r#"parameters.rim={ name = "spring", stiffness = 10000 }"#;
 
+const WITHOUT_DRAG: [&str; 2] = ["networks.sample.masses.block.drag=0", "networks.sample.masses.head.drag=0"];
+
+const BINGHAM: &str = r#"parameters.law={ name = "bingham", stiffness = 10000, viscosity = 100, traction = 10, compression = 10 }"#;
+
+/// Other laws of links in the block, five in series and sixteen side by side, a damper of 2 N s/m beside each.
+pub(super) const BLOCKS: &[Case] = &[
+    Case {
+        id: "block_of_paste_flows",
+        capabilities: &["JIM-56", "JIM-99", "JIM-54"],
+        what: "stretch that stays of a block of Bingham's links under 15 N each: 5/z times the impulse beyond the threshold",
+        settings: &[BINGHAM, WITHOUT_DRAG[0], WITHOUT_DRAG[1]],
+        // 5 (1/3 5/2 + 2 5 + 1/3 5/2)/(100 + 2)
+        reference: 5.0 * (35.0 / 3.0) / 102.0,
+        // flow goes on for z/k = 10 ms while the force falls by 15 N/s: 15 0.01²/2 of 11.7 N s
+        tolerance: Tolerance::Relative(1e-4),
+        source: "EXP-61, EXP-44: flow at (Q - Qe)/z",
+        mutation: "parameters.law.traction=10.1",
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_paste_holds",
+        capabilities: &["JIM-56", "JIM-99", "JIM-54"],
+        what: "the same after it was pulled by 9.5 N each: nothing",
+        settings: &[
+            BINGHAM,
+            WITHOUT_DRAG[0],
+            WITHOUT_DRAG[1],
+            r#"parameters.pull="152 * (smoothstep(0, 1, t) - smoothstep(3, 4, t))""#,
+        ],
+        reference: 0.0,
+        // what still swings of 5 9.5/10000 m
+        tolerance: Tolerance::Absolute(5e-9),
+        source: "EXP-61, EXP-44: solid below Qe",
+        mutation: "parameters.law.traction=9.4",
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_burger_flows",
+        capabilities: &["JIM-56", "JIM-99", "JIM-53"],
+        what: "stretch that stays of a block of Burger's links when what is elastic and what is delayed has come back: 5/z2 times the impulse of each column",
+        settings: &[
+            r#"parameters.law={ name = "burger", solid_stiffness = 2000, solid_viscosity = 100, fluid_stiffness = 2000, fluid_viscosity = 1000 }"#,
+            WITHOUT_DRAG[0],
+            WITHOUT_DRAG[1],
+        ],
+        // beside it a damper of 2 N s/m: 5 45/1002
+        reference: 225.0 / 1002.0,
+        source: "EXP-61, EXP-43: the viscous part of creep",
+        mutation: "parameters.law.fluid_viscosity=1010",
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_kelvin_voigt_creeps",
+        capabilities: &["JIM-56", "JIM-99", "JIM-49"],
+        what: "stretch of a block of springs and dampers under 15 N each, two seconds after it had them in full: 5 f/k",
+        settings: &[r#"parameters.law={ name = "spring_damper", stiffness = 1000, damping = 6 }"#],
+        reading: Reading::last("stretch").after(300),
+        reference: 0.075,
+        // with the damper beside it retarded by z/k = 8 ms
+        source: "EXP-61: q(t) at constant Q",
+        mutation: r#"parameters.law={ name = "spring_damper", stiffness = 1001, damping = 6 }"#,
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_kelvin_voigt_is_retarded",
+        capabilities: &["JIM-56", "JIM-99", "JIM-49"],
+        what: "the same while the force rises by 15 N/s, half a second after it began: behind it by z/k",
+        settings: &[
+            r#"parameters.law={ name = "spring_damper", stiffness = 1000, damping = 6 }"#,
+            WITHOUT_DRAG[0],
+            WITHOUT_DRAG[1],
+        ],
+        reading: Reading::last("stretch").after(50),
+        // 5 15 (t - z/k)/k, z = 6 + 2 N s/m: what came before has gone by e^(-t k/z)
+        reference: 0.0369,
+        // a step of 0.5 ms on the way, of 492 ms
+        tolerance: Tolerance::Relative(1.1e-3),
+        source: "EXP-61: q(t) while Q rises; k q + z q' = Q",
+        mutation: r#"parameters.law={ name = "spring_damper", stiffness = 1000, damping = 3 }"#,
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_compiled_links_stays",
+        capabilities: &["JIM-56", "JIM-99", "JIM-55"],
+        what: "what stays of the stretch of a block of links that a tree of springs and a slider makes, a spring in series with a slider beside another: 5 (15 - 10)/250",
+        settings: &[
+            r#"parameters.law={ name = "rheological", network = "spring(1000) - (slider(10) | spring(250))" }"#,
+        ],
+        reference: 0.1,
+        source: "EXP-61, EXP-45: as of elasto-plastic links",
+        mutation: r#"parameters.law={ name = "rheological", network = "spring(1000) - (slider(10) | spring(251))" }"#,
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_cohesion_stretches",
+        capabilities: &["JIM-56", "JIM-99", "JIM-25"],
+        what: "stretch of a block of cohesive links under 7.5 N each: 5 f/k_a",
+        settings: &[COHESIVE, r#"parameters.pull="min(120, 120 * t)""#],
+        reading: Reading::last("stretch").after(600),
+        reference: 0.025,
+        source: "EXP-61: Q(q) of a cohesive material below its strongest pull",
+        mutation: "parameters.law.cohesion=1501",
+        ..BLOCK
+    },
+    Case {
+        id: "block_of_cohesion_breaks",
+        capabilities: &["JIM-56", "JIM-99", "JIM-25", "JIM-30"],
+        what: "greatest force on the plate that holds it when it is led apart: 16 k_a (S2 - S), and what the dampers beside bear at 5 mm/s",
+        settings: &[COHESIVE, LED_SLOWLY_BY_100, "networks.sample.loads=[]", WITHOUT_DRAG[0]],
+        reading: Reading::last("pull").taking(Statistic::Min),
+        // 16 (15 + 2 0.005)
+        reference: -240.16,
+        // it grows by 16 1500 0.005 N/s till then: a step of it
+        tolerance: Tolerance::Absolute(120.0 * 5e-4),
+        source: "EXP-61: peak = bonds x k_a (S2 - S)",
+        mutation: "parameters.law.peak=0.1101",
+        ..BLOCK
+    },
+];
+
+const COHESIVE: &str =
+    r#"parameters.law={ name = "cohesion", distance = 0.1, peak = 0.11, range = 0.15, cohesion = 1500 }"#;
+
+/// A sample between rough plates under a force that stays; read ten cells from them, where 1 % of what they do is left.
+const SAMPLE: Case = Case {
+    capabilities: &["JIM-56"],
+    scene: "pressed_sample",
+    reading: Reading::last("above"),
+    tolerance: Tolerance::Relative(0.01),
+    source: "EXP-46: uniaxial compression, strain at mid-height; F = f (3 n - 1)/2 of n = 7 columns whose upright links bear f, in equilibrium at free sides too",
+    ..OSCILLATOR
+};
+
+const PRESSED: &str = "parameters.pull=-($press) * smoothstep(0, 2, t)";
+
+pub(super) const SAMPLES: &[Case] = &[
+    Case {
+        id: "sample_slope",
+        what: "how far a mass a cell above the middle of a sample comes down that two plates press by 50 N: F/(10 k)",
+        settings: &[PRESSED, "parameters.press=50"],
+        reference: -5e-5,
+        mutation: "parameters.law.stiffness=1.02e5",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_is_homogeneous",
+        what: "what the gauge of two cells says over that of one",
+        settings: &[PRESSED, "parameters.press=50"],
+        reading: Reading::Ratio { of: "above_that", to: "above", component: 0 },
+        reference: 2.0,
+        // pressed beside the gauges at one place
+        mutation: "networks.sample.loads[0].region={ nearest = [0, 0, 0.3] }",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_is_homogeneous_across",
+        what: "what the gauge of a free side says over that of the axis",
+        settings: &[PRESSED, "parameters.press=50"],
+        reading: Reading::Ratio { of: "above_at_side", to: "above", component: 0 },
+        reference: 1.0,
+        mutation: "networks.sample.loads[0].region={ nearest = [0, 0, 0.3] }",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_widens",
+        what: "how far a free side, three cells from the axis, comes out over how far a cell is pressed together: half of it in each",
+        settings: &[PRESSED, "parameters.press=50"],
+        reading: Reading::Ratio { of: "side", to: "above", component: 0 },
+        reference: -1.5,
+        // without diagonals
+        mutation: "networks.sample.links[0].reach=0.101",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_yields",
+        what: "how far the first mass comes down under 130 N, 30 N beyond 10 Qe: upright links yield, the others bear what they did and more",
+        settings: &[PRESSED],
+        // 100/(10 k) + 30/(7 B + 6 k/2), B = k k'/(k + k') = k/5
+        reference: -1.681_818e-4,
+        // 1 % of the force, over the slope that is left
+        tolerance: Tolerance::Absolute(1.3 / 4.4e5),
+        mutation: "parameters.law.traction=9.5",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_stays_pressed",
+        what: "how far of that it stays down",
+        // less 130/(10 k)
+        reference: -3.818_18e-5,
+        tolerance: Tolerance::Absolute(1.3 / 4.4e5 - 1.3 / 1e6),
+        mutation: "parameters.law.hardening=3e4",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_bears",
+        what: "how far it comes down under 150 N where links tear at 11 N: those across, which bear half of what upright ones do, have yielded since 144 N and hold",
+        settings: &[PRESSED, "parameters.press=150", "parameters.law.rupture=11"],
+        // 100/(10 k) + 44/(4.4 k) + 6/(7 B + 6 (k - k/1.2))
+        reference: -2.25e-4,
+        tolerance: Tolerance::Absolute(1.5 / 2.4e5),
+        mutation: "parameters.law.rupture=10.3",
+        ..SAMPLE
+    },
+    Case {
+        id: "sample_ruptures",
+        what: "the same under 160 N, where links across bear 11 N at 158 N: they tear, and upright links are left alone with 160/7 N",
+        settings: &[PRESSED, "parameters.press=160", "parameters.law.rupture=11"],
+        // Qe/k + (160/7 - Qe)/B
+        reference: -7.428_57e-4,
+        tolerance: Tolerance::AtMost,
+        mutation: "parameters.law.rupture=13",
+        ..SAMPLE
+    },
+];
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "led_bulk",
