@@ -215,6 +215,55 @@ pub(super) const CASES: &[Case] = &[
         ..STACK
     },
     Case {
+        id: "smooth_heap_stands",
+        capabilities: &["JIM-28"],
+        what: "height of the topmost of thirty balls that only exclude each other, in four layers on rough ground: more than two diameters",
+        scene: "smooth_heap",
+        reading: Reading::last("top"),
+        reference: 0.2,
+        tolerance: Tolerance::Above,
+        source: "EXP-35: non-penetration only, a stable heap higher than 2 S on rough ground",
+        mutation: "parameters.draw=1",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "smooth_heap_rests",
+        capabilities: &["JIM-28"],
+        what: "the greatest speed in it after four seconds, over that after one",
+        scene: "smooth_heap",
+        reading: Reading::last("fastest").taking(Statistic::LastOver(100)),
+        reference: 1e-3,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-35: the greatest speed goes to zero",
+        mutation: "networks.sand.crowds[0].law.damping=0",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "smooth_heap_is_at_rest",
+        capabilities: &["JIM-28"],
+        what: "the greatest speed itself: less than a thousandth of a diameter in a second",
+        scene: "smooth_heap",
+        reading: Reading::last("fastest"),
+        reference: 1e-4,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-35: the greatest speed goes to zero; EXP-22: at rest below 1e-3 S/s",
+        mutation: "networks.sand.crowds[0].law.damping=0",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "smooth_heap_runs_down",
+        capabilities: &["JIM-28"],
+        what: "height of its topmost ball half a second after a half of its ground began to be drawn away: below the ground's uppermost layer",
+        scene: "smooth_heap",
+        settings: &["parameters.draw=1"],
+        reading: Reading::last("top").after(250),
+        reference: 0.1,
+        tolerance: Tolerance::AtMost,
+        source: "EXP-35: collapse when a support is removed",
+        mutation: "parameters.draw=0",
+        ..OSCILLATOR
+    },
+    Case {
         id: "heap_runs_out",
         capabilities: &["JIM-28"],
         what: "how far a heap has run out whose support was drawn away: beyond where that stood",
@@ -717,6 +766,57 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(0.0),
         source: "EXP-36: components 1 -> 2 -> 1",
         mutation: "networks.clay.pins[1].motion.offsets[2]=[0, 0, 1]",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "bar_is_strangled",
+        capabilities: &["JIM-30"],
+        what: "parts that a bar of cohesive balls is in after two jaws closed round its waist and opened again",
+        scene: "strangled_clay",
+        reading: Reading::last("parts").after(700),
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "EXP-09: components 1 -> 2 under strangling",
+        mutation: "parameters.close=1",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "bar_is_one_again",
+        capabilities: &["JIM-30"],
+        what: "parts of the same after its ends were pressed together",
+        scene: "strangled_clay",
+        reading: Reading::last("parts"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "EXP-09: pieces stick again when pressed together if cohesive",
+        mutation: "parameters.press=0",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "kernel_goes_to_the_softer_flesh",
+        capabilities: &["JIM-35"],
+        what: "how far a kernel goes whose dermis is of two agglomerates, the left one a tenth as stiff, when two jaws close by 0.05 m each: to the left by half as far as they do at least",
+        scene: "two_fleshes",
+        reading: Reading::last("kernel"),
+        // springs of 1 and 10 in series would share as 10 to 1: by 0.05 (10 - 1)/(10 + 1) m; half of the way is left to the jaws' own balls and to what lies between
+        reference: -0.025,
+        tolerance: Tolerance::AtMost,
+        source: "specification §2.12.2: several agglomerates with different laws for non-homogeneous objects",
+        mutation: "parameters.soft=4000",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "kernel_stays_between_equal_fleshes",
+        capabilities: &["JIM-35"],
+        what: "the same where both have the same law: it stays",
+        scene: "two_fleshes",
+        settings: &["parameters.soft=10000"],
+        reading: Reading::last("kernel"),
+        reference: 0.0,
+        // rounding of forces of 300 N in four thousand steps
+        tolerance: Tolerance::Absolute(1e-12),
+        source: "specification §2.12.2: several agglomerates with different laws for non-homogeneous objects",
+        mutation: "parameters.firm=10001",
         ..OSCILLATOR
     },
     Case {
