@@ -75,6 +75,8 @@ pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     // of each number of threads the logarithms of balls and of the time of a step
     let mut points: Vec<(Timed, Vec<[f64; 2]>)> = Vec::new();
+    // the same of one thread by pairs, of which few balls have fewer each
+    let mut by_pairs: Vec<[f64; 2]> = Vec::new();
     for (count, radius) in RADII {
         let Scene { model, state, probes, bodies, .. } = scene(HEAP, &heap(radius))?;
         let balls = bodies[0].mesh.points.len() as f64;
@@ -90,10 +92,16 @@ pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
             let name = format!("{name}_{count}");
             let of_pairs = |seconds: f64| pairs / seconds;
             let of_ball = |seconds: f64| 1e9 * seconds / balls;
+            let of_pair = |seconds: f64| 1e9 * seconds / pairs;
             figures.push(timed.steps_per_second(&name, &told));
             figures.push(timed.of_seconds(&format!("{name}_pairs"), of_pairs, &told, ("pairs/s", true)));
             let in_step = ("ns/ball and step", false);
             figures.push(timed.of_seconds(&format!("{name}_ball"), of_ball, &told, in_step));
+            if threads == 1 {
+                let in_step = ("ns/pair and step", false);
+                figures.push(timed.of_seconds(&format!("{name}_pair"), of_pair, &told, in_step));
+                by_pairs.push([pairs.ln(), timed.seconds_of_step().ln()]);
+            }
             let point = [balls.ln(), timed.seconds_of_step().ln()];
             match points.get_mut(run) {
                 Some((last, of_run)) => {
@@ -113,6 +121,11 @@ pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     for (run, (timed, of_run)) in points.iter().enumerate() {
         let (grows, held) = (vec![slope(of_run)], if run == all { &exponent } else { &told });
         figures.push(timed.figure(&format!("{name}_exponent"), grows, held, ("of balls", false)));
+        if timed.threads == 1 {
+            let grows = vec![slope(&by_pairs)];
+            let of_pairs = ("of pairs", false);
+            figures.push(timed.figure(&format!("{name}_pairs_exponent"), grows, &exponent, of_pairs));
+        }
     }
     Ok(figures)
 }
