@@ -160,6 +160,62 @@ pub(super) const BLOCKS: &[Case] = &[
         mutation: "parameters.law.peak=0.1101",
         ..BLOCK
     },
+    Case {
+        id: "led_paste_keeps_its_threshold",
+        capabilities: &["JIM-56", "JIM-99", "JIM-54"],
+        what: "force on a face of a block of Bingham's links a second after it was pressed to nine tenths and held: twenty-five thresholds, where 20 N each were led in",
+        settings: &[
+            r#"parameters.law={ name = "bingham", stiffness = 2000, viscosity = 20, traction = 10, compression = 10 }"#,
+        ],
+        reading: Reading::last("along_z"),
+        reference: 250.0,
+        // what still swings, as of other laws
+        tolerance: Tolerance::Relative(1e-6),
+        source: "EXP-61, EXP-44: Q(t) at constant q",
+        mutation: "parameters.law.compression=10.1",
+        ..LED
+    },
+    Case {
+        id: "led_compiled_paste_keeps_its_threshold",
+        capabilities: &["JIM-56", "JIM-99", "JIM-55"],
+        what: "the same of a spring in series with a slider beside a damper",
+        settings: &[
+            r#"parameters.law={ name = "rheological", network = "spring(2000) - (slider(10) | damper(20))" }"#,
+        ],
+        reading: Reading::last("along_z"),
+        reference: 250.0,
+        tolerance: Tolerance::Relative(1e-6),
+        source: "EXP-61, EXP-45: Q(t) at constant q",
+        mutation: r#"parameters.law={ name = "rheological", network = "spring(2000) - (slider(10.1) | damper(20))" }"#,
+        ..LED
+    },
+    Case {
+        id: "led_burger_is_delayed",
+        capabilities: &["JIM-56", "JIM-99", "JIM-53"],
+        what: "the same of Burger's links that hardly flow: both their springs in series, 25 k1 k2/(k1 + k2) 10 mm",
+        settings: &[
+            r#"parameters.law={ name = "burger", solid_stiffness = 2000, solid_viscosity = 20, fluid_stiffness = 2000, fluid_viscosity = 1e9 }"#,
+        ],
+        reading: Reading::last("along_z"),
+        reference: 250.0,
+        // of 10 mm has flowed the impulse, 15 N s, over 1e9 N s/m
+        tolerance: Tolerance::Relative(3e-6),
+        source: "EXP-61, EXP-43: Q(t) at constant q, the delayed part",
+        mutation: "parameters.law.solid_stiffness=2010",
+        ..LED
+    },
+    Case {
+        id: "led_cohesion_is_pressed",
+        capabilities: &["JIM-56", "JIM-99", "JIM-25"],
+        what: "the same of cohesive links: 25 k_a 10 mm",
+        settings: &[COHESIVE],
+        reading: Reading::last("along_z"),
+        reference: 375.0,
+        tolerance: Tolerance::Relative(1e-6),
+        source: "EXP-61: Q(q) of a cohesive material that is pressed",
+        mutation: "parameters.law.cohesion=1501",
+        ..LED
+    },
 ];
 
 const COHESIVE: &str =
