@@ -17,6 +17,6 @@ pub mod scenes;
 pub use case::{Case, Tolerance, cases};
 pub use cases::{TABLES, all};
 pub use derivation::{Count, Trial};
-pub use reading::{Observation, Reading, Statistic};
+pub use reading::{Observation, OperatorNumber, Reading, Statistic};
 pub use refinement::{Limit, Refinement, Variant};
 pub use row::{Problem, Row, RunOfRow};

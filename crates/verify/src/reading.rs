@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use souple_models::materials::Lame;
+use souple_models::solids::{OperatorQuality, operator_quality};
 use souple_run::{Control, Options, Report, Status, Trace};
 use souple_scene::Scene;
 
@@ -19,6 +21,10 @@ pub enum Reading {
     Ratio { of: &'static str, to: &'static str, component: usize },
     /// A natural frequency [Hz] of the first system, the lowest being number 1, as `souple modes` prints it.
     NaturalFrequency(usize),
+    /// The same of a body that is free to move, which has frequencies of zero: of those nearest to 1 Hz.
+    FreeFrequency(usize),
+    /// What an operator makes of the mesh of the first body, as `souple mesh operators` prints it.
+    Operator { operator: &'static str, number: OperatorNumber },
     /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
     HighestFrequency,
     /// The condition of the moments that moving least squares over the places of a body's frames would invert, as
@@ -33,6 +39,30 @@ pub enum Reading {
     Steps,
     /// A count of a derivation; there is no scene, and settings are arguments of `souple derive`.
     Derived(Count),
+}
+
+/// A number of [`OperatorQuality`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OperatorNumber {
+    Asymmetry,
+    GradDivAsymmetry,
+    LaplacianError,
+    GradDivError,
+    InnerCrossTerms,
+    BorderCrossTerms,
+}
+
+impl OperatorNumber {
+    fn of(self, quality: &OperatorQuality) -> f64 {
+        match self {
+            Self::Asymmetry => quality.asymmetry,
+            Self::GradDivAsymmetry => quality.grad_div_asymmetry,
+            Self::LaplacianError => quality.laplacian_error,
+            Self::GradDivError => quality.grad_div_error,
+            Self::InnerCrossTerms => quality.inner_cross_terms,
+            Self::BorderCrossTerms => quality.border_cross_terms,
+        }
+    }
 }
 
 /// A number of a run.
@@ -100,6 +130,8 @@ impl Reading {
             Self::Probe(observation) => observation.probe.to_owned(),
             Self::Ratio { of, to, .. } => format!("{of} / {to}"),
             Self::NaturalFrequency(number) => format!("natural frequency {number}"),
+            Self::FreeFrequency(number) => format!("free frequency {number}"),
+            Self::Operator { operator, number } => format!("{number:?} of {operator}").to_lowercase(),
             Self::HighestFrequency => "highest frequency".to_owned(),
             Self::MomentCondition(body) => format!("moment_condition of {body}"),
             Self::StepMilliseconds => "wall_seconds / steps".to_owned(),
@@ -116,6 +148,8 @@ impl Reading {
                 ("run", steps.map(|steps| format!(" --steps {steps}")).unwrap_or_default())
             }
             Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
+            Self::FreeFrequency(number) => ("modes", format!(" --near 1 --count {number}")),
+            Self::Operator { .. } => ("mesh operators", " --json".to_owned()),
             Self::HighestFrequency | Self::MomentCondition(_) => ("check", " --json".to_owned()),
             Self::StepMilliseconds => ("run", " --threads 1 --json".to_owned()),
             Self::Ratio { .. } | Self::NewtonIterations | Self::Steps => ("run", " --json".to_owned()),
@@ -147,11 +181,15 @@ impl Reading {
                 };
                 Ok((value(of)? / value(to)?, ""))
             }
-            Self::NaturalFrequency(number) => {
-                let systems = souple_run::natural_frequencies(scene, *number, 0.0)
-                    .map_err(|error| error.to_string())?;
-                let hertz = systems.first().and_then(|system| system.hertz.get(number.checked_sub(1)?));
-                Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
+            Self::NaturalFrequency(number) => frequency(scene, *number, 0.0),
+            Self::FreeFrequency(number) => frequency(scene, *number, 1.0),
+            Self::Operator { operator, number } => {
+                let mesh = &scene.bodies.first().ok_or("the scene has no body")?.mesh;
+                // V-01's, as `souple mesh operators` has them
+                let moduli = Lame { mu: 7000.0, lambda: 20000.0 };
+                let all = operator_quality(mesh, moduli, 1000.0).map_err(|error| error.to_string())?;
+                let quality = all.iter().find(|quality| quality.operator == *operator);
+                Ok((number.of(quality.ok_or_else(|| format!("there is no operator `{operator}`"))?), ""))
             }
             Self::Derived(_) => unreachable!("counted above"),
             Self::HighestFrequency => {
@@ -181,6 +219,13 @@ impl Reading {
             Self::Steps => Ok((report_of(name, scene)?.steps as f64, "")),
         }
     }
+}
+
+/// Of the first system, of those nearest to another [Hz].
+fn frequency(scene: Scene, number: usize, near: f64) -> Result<(f64, &'static str), Problem> {
+    let systems = souple_run::natural_frequencies(scene, number, near).map_err(|error| error.to_string())?;
+    let hertz = systems.first().and_then(|system| system.hertz.get(number.checked_sub(1)?));
+    Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
 }
 
 fn report_of(name: &str, scene: Scene) -> Result<Report, Problem> {

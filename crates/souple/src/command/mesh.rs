@@ -97,9 +97,13 @@ enum Action {
     },
     /// Tells what the linear formulations make of a mesh of tet4, or tri3 in a plane: symmetry, growth, exactness of quadratic fields
     Operators {
+        /// A mesh file, or a scene, of which the first body is taken
         input: PathBuf,
         /// NAME=VALUE: mu, lambda [Pa], density
         parameters: Vec<String>,
+        /// Changes a value of the scene; may be repeated
+        #[arg(long = "set", value_name = "PATH=VALUE")]
+        settings: Vec<String>,
         #[arg(long)]
         json: bool,
     },
@@ -180,10 +184,15 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             report(&input, &mesh, &notes, json);
             Ok(End::Done)
         }
-        Action::Operators { input, parameters, json } => {
-            let (mut mesh, _) = read(&input)?;
-            mesh.validate().map_err(|error| unfit(&input, &error))?;
-            let found = operators::of(&mesh, &parameters)?;
+        Action::Operators { input, parameters, settings, json } => {
+            let found = match operators::first_body(&input, &settings)? {
+                Some(mesh) => operators::of(&mesh, &parameters)?,
+                None => {
+                    let (mut mesh, _) = read(&input)?;
+                    mesh.validate().map_err(|error| unfit(&input, &error))?;
+                    operators::of(&mesh, &parameters)?
+                }
+            };
             if json {
                 print_json(&operators::to_json(&found));
             } else {

@@ -180,7 +180,47 @@ const BLOCK: Case = Case {
     ..CUBE
 };
 
+/// A bar of six parts of 96 tetrahedra, each four times as stiff as the one before: six rates, the fastest in every tick.
+macro_rules! six_rates {
+    ($schedule:literal) => {
+        &[
+            r#"probes={ peak = { body = "cube", quantity = "levels.peak" } }"#,
+            "expect=[]",
+            "bodies.cube.mesh.cells=[24, 2, 2]",
+            "bodies.cube.levels.fixed=\"2\"",
+            r#"bodies.cube.regions={ a = { region = { box = [[-1, -1, -1], [0.0167, 1, 1]] }, material = { name = "linear", youngs_modulus = 20, poissons_ratio = 0.37, density = 1000 } }, b = { region = { box = [[0.0167, -1, -1], [0.0334, 1, 1]] }, material = { name = "linear", youngs_modulus = 80, poissons_ratio = 0.37, density = 1000 } }, c = { region = { box = [[0.0334, -1, -1], [0.0501, 1, 1]] }, material = { name = "linear", youngs_modulus = 320, poissons_ratio = 0.37, density = 1000 } }, d = { region = { box = [[0.0501, -1, -1], [0.0668, 1, 1]] }, material = { name = "linear", youngs_modulus = 1280, poissons_ratio = 0.37, density = 1000 } }, e = { region = { box = [[0.0668, -1, -1], [0.0834, 1, 1]] }, material = { name = "linear", youngs_modulus = 5120, poissons_ratio = 0.37, density = 1000 } }, f = { region = { box = [[0.0834, -1, -1], [1, 1, 1]] }, material = { name = "linear", youngs_modulus = 20480, poissons_ratio = 0.37, density = 1000 } } }"#,
+            concat!(r#"systems.main.stepper={ name = "staggered", halvings = 5, schedule = ""#, $schedule, "\" }"),
+        ]
+    };
+}
+
+const TICKS: Case = Case {
+    capabilities: &["DEB-33"],
+    reading: Reading::last("peak").after(1),
+    source: "specification, V-35: the worst step over the mean with equal lists, 2 at most staggered, about the number of rates plain",
+    ..CUBE
+};
+
 pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "levels_ticks_staggered",
+        what: "the busiest tick of a step over the mean, six equal lists of tetrahedra, each of a rate of its own",
+        settings: six_rates!("staggered"),
+        // the fastest and one other, of 63 lists in 32 ticks
+        reference: 2.0 * 32.0 / 63.0,
+        tolerance: Tolerance::Relative(1e-12),
+        mutation: "systems.main.stepper.schedule=\"plain\"",
+        ..TICKS
+    },
+    Case {
+        id: "levels_ticks_plain",
+        what: "the same where every list is due as its interval begins: all six in the first tick",
+        settings: six_rates!("plain"),
+        reference: 6.0 * 32.0 / 63.0,
+        tolerance: Tolerance::Relative(1e-12),
+        mutation: "systems.main.stepper.schedule=\"staggered\"",
+        ..TICKS
+    },
     Case {
         id: "levels_cube_coarse",
         what: "sag of the clamped cube, the mesh of 48 tetrahedra at work, St. Venant-Kirchhoff",

@@ -89,6 +89,7 @@ pub const TABLES: &[&[Case]] = &[
     derivations::CASES,
     wall_cube::CASES,
     wall_cube::SHEARED,
+    wall_cube::SHEARED_MESHES,
     wall_cube::MIRRORED,
     strain_measures::CASES,
     contact::CASES,

@@ -1,5 +1,7 @@
 //! Particles: how a cube of them swings by its number, a rod on an octree.
 
+use std::f64::consts::SQRT_2;
+
 use crate::reading::Statistic;
 use crate::{Case, Reading, Tolerance};
 
@@ -112,7 +114,213 @@ const HALVED_HIERARCHICAL: &str = r#"bodies.cube.octree={ levels = 4, operators 
 const EACH_ONCE: &str = "systems.main.stepper.halvings=0";
 const SHORT_STEP: &str = "world.period=\"10 us\"";
 
+/// The block of V-06 as 16 x 16 x 8 particles and their groups of eight and of 64, pressed to half its height: 2048 particles at most, 32 at rest.
+macro_rules! pressed {
+    ($octree:literal) => {
+        &[
+            "systems.main.stepper.halvings=6",
+            "bodies.block.levels=",
+            r#"bodies.block.mesh={ generate = "bar", size = [0.12, 0.12, 0.056], cells = [15, 15, 7], element = "hex8" }"#,
+            "bodies.block.mass=\"uniform\"",
+            r#"bodies.block.material={ name = "linear", youngs_modulus = 10000, poissons_ratio = 0.35, density = 1000 }"#,
+            "bodies.block.damping={ rayleigh_mass = 10 }",
+            concat!("bodies.block.octree=", $octree),
+            "shapes.ball.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.0345], [0, 0, -0.0345], [0, 0, 0]]",
+        ]
+    };
+}
+
+const PRESSED: Case = Case {
+    capabilities: &["DEB-12", "DEB-14"],
+    scene: "pressed_block",
+    settings: pressed!("{ levels = 3, refine = 0.2, coarsen = 0.05 }"),
+    source: "specification, V-06",
+    ..SWING
+};
+
+/// What the operators do to the constant second derivatives of a field, of an inner particle among its 26 neighbours: let go from where the field has
+/// it, it has the velocity of one step, a millisecond of `(μ Δu + (λ+μ) grad div u)/ρ`.
+macro_rules! field {
+    ($operators:literal, $field:literal) => {
+        &[
+            "world.period=\"1 ms\"",
+            "world.gravity=[0, 0, 0]",
+            "systems.main.steps_per_period=1",
+            "bodies.cube.pins=[]",
+            "expect=[]",
+            "bodies.cube.mesh.cells=[4, 4, 4]",
+            concat!(
+                r#"bodies.cube.formulation={ name = "particles", operators = ""#,
+                $operators,
+                r#"", volumes = "uniform" }"#
+            ),
+            concat!("bodies.cube.start={ displacement = ", $field, " }"),
+            r#"probes.corner={ body = "cube", region = { nearest = [0.05, 0.05, 0.05] }, quantity = "velocity" }"#,
+        ]
+    };
+}
+
+/// `μ/ρ` and `(λ+μ)/ρ` [m²/s²], over a thousand.
+const SHEAR: f64 = 7e-3;
+const SPREAD: f64 = 27e-3;
+/// `Σ l`, `⟨n_x⁴⟩` and `⟨n_x² n_y²⟩` of six neighbours at 1, twelve at √2 and eight at √3.
+const LENGTHS: f64 = 6.0 + 12.0 * SQRT_2 + 8.0 * SQRT_3;
+const FOURTH: f64 = (2.0 + 2.0 * SQRT_2 + 8.0 / 9.0 * SQRT_3) / LENGTHS;
+const CROSSED: f64 = (SQRT_2 + 8.0 / 9.0 * SQRT_3) / LENGTHS;
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+const LEGACY: Case = Case {
+    capabilities: &["DEB-6", "DEB-7"],
+    settings: field!("legacy", "[\"x * x\", 0, 0]"),
+    reading: Reading::component("corner", 0).after(1),
+    // half of the field's Laplacian is one of three directions of three
+    reference: SHEAR * 2.0 / 3.0 + SPREAD * 2.0 * FOURTH,
+    tolerance: Tolerance::Relative(1e-4),
+    source: "specification, V-04 and 2.5.3: a third of the Laplacian, and means of the direction's fourth powers over the 26 neighbours",
+    mutation: "bodies.cube.formulation.operators=\"corrected\"",
+    ..SWING
+};
+
+/// The greatest error of a particle of a ball of tetrahedra, 14 neighbours to an inner one, more rings of them at the border.
+macro_rules! unordered {
+    ($field:literal, $velocity:literal) => {
+        &[
+            "world.period=\"1 ms\"",
+            "world.gravity=[0, 0, 0]",
+            "systems.main.steps_per_period=1",
+            "bodies.cube.pins=[]",
+            "expect=[]",
+            r#"bodies.cube.mesh={ shape = "ellipsoid", size = 0.02, semi_axes = [0.05, 0.05, 0.05] }"#,
+            r#"bodies.cube.formulation={ name = "particles", operators = "least_squares" }"#,
+            "bodies.cube.mass=\"lumped\"",
+            concat!("bodies.cube.start={ displacement = ", $field, " }"),
+            concat!(
+                r#"probes.corner={ body = "cube", quantity = "velocity", against = { formula = "#,
+                $velocity,
+                r#" }, component = "length", reduce = "max" }"#
+            ),
+        ]
+    };
+}
+
 pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "particles_legacy_xx",
+        what: "velocity [m/s] that the source's operators give an inner particle in a step of a millisecond, of the displacement `x²` along x",
+        ..LEGACY
+    },
+    Case {
+        id: "particles_legacy_yy",
+        what: "the same of `y²` along x",
+        settings: field!("legacy", "[\"y * y\", 0, 0]"),
+        reference: SHEAR * 2.0 / 3.0 + SPREAD * 2.0 * CROSSED,
+        ..LEGACY
+    },
+    Case {
+        id: "particles_legacy_xy",
+        what: "the same of `x y` along y, a cross derivative, which the source has as none",
+        settings: field!("legacy", "[0, \"x * y\", 0]"),
+        reference: SPREAD * 2.0 * CROSSED,
+        ..LEGACY
+    },
+    Case {
+        id: "particles_exact_sets",
+        capabilities: &["DEB-7"],
+        what: "farthest [m/s] that least squares are from the exact velocity of a quadratic field of two components, 95 mm/s, on neighbours without any order",
+        settings: unordered!("[\"x * x\", \"x * y\", 0]", "[\"0.095\", 0, 0]"),
+        reading: Reading::last("corner").after(1),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1e-10 * 0.095),
+        source: "specification, V-04: exact to 1e-10 on random sets of 12 neighbours and more",
+        mutation: "bodies.cube.formulation.operators=\"corrected\"",
+        ..LEGACY
+    },
+    Case {
+        id: "particles_exact_crossed",
+        capabilities: &["DEB-7"],
+        what: "the same of a field with cross derivatives",
+        settings: unordered!("[\"y * z\", \"z * z + x * y\", 0]", "[\"0.027\", \"0.014\", 0]"),
+        reading: Reading::last("corner").after(1),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1e-10 * 0.027),
+        source: "specification, V-04: exact to 1e-10 on random sets of 12 neighbours and more",
+        mutation: "bodies.cube.formulation.operators=\"corrected\"",
+        ..LEGACY
+    },
+    Case {
+        id: "particles_corrected_grow",
+        capabilities: &["DEB-6", "DEB-7", "DEB-8"],
+        what: "how far up the corner of 4 x 4 x 4 particles comes within 0.14 s by corrected operators, which have no energy at a free border: more than the cube is long",
+        settings: &["expect=[]", r#"bodies.cube.formulation.operators="corrected""#],
+        reading: Reading::component("corner", 0).taking(Statistic::Max).after(14),
+        reference: 0.1,
+        tolerance: Tolerance::Above,
+        source: "specification, 2.5.2: one-sided sets see gradients; V-05 asks for a spread of corrected operators, which cannot be had of what grows",
+        mutation: r#"bodies.cube.formulation.operators="legacy""#,
+        ..SWING
+    },
+    Case {
+        id: "particles_late_8",
+        what: "how far the corner of 8 x 8 x 8 particles swings in the last 10 s of a minute: as far as in its first",
+        settings: &[CELLS_7, "run.duration=\"60 s\""],
+        reading: Reading::component("corner", 2).taking(Statistic::LateSpan(5_000)),
+        reference: 26.929e-3,
+        tolerance: Tolerance::Relative(0.05),
+        source: "specification, V-05: no drift of amplitude over 60 s; the first 10 s of the same run",
+        mutation: "bodies.cube.damping.neighbour_friction=0.01",
+        ..SWING
+    },
+    Case {
+        id: "particles_late_energy_4",
+        capabilities: &["DEB-7", "DEB-8"],
+        what: "the same of 4 x 4 x 4 particles with an energy",
+        settings: &[ENERGY, LUMPED, "run.duration=\"60 s\""],
+        reading: Reading::component("corner", 2).taking(Statistic::LateSpan(5_000)),
+        reference: 30.889e-3,
+        tolerance: Tolerance::Relative(0.05),
+        source: "specification, V-05: no drift of amplitude over 60 s; the first 10 s of the same run",
+        mutation: "bodies.cube.damping.neighbour_friction=0.01",
+        ..SWING
+    },
+    Case {
+        id: "octree_block_fine_under_ball",
+        what: "rank correlation of the level at work with the distance from a ball that presses a block of particles to half its height",
+        reading: Reading::last("nearness").after(90),
+        reference: -0.5,
+        tolerance: Tolerance::AtMost,
+        mutation: "bodies.block.octree.refine=1e9",
+        ..PRESSED
+    },
+    Case {
+        id: "octree_block_is_whole_again",
+        what: "dent of the block of particles two seconds after the ball has gone: less than 1 % of its width",
+        reading: Reading::component("dent", 2).after(330),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1.2e-3),
+        mutation: "shapes.ball.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.0325], [0, 0, -0.0325], [0, 0, -0.03]]",
+        ..PRESSED
+    },
+    Case {
+        id: "octree_block_is_coarse_again",
+        what: "particles at work then: the coarsest, and none finer",
+        reading: Reading::last("active").after(330),
+        reference: 32.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "bodies.block.octree.coarsen=0",
+        ..PRESSED
+    },
+    Case {
+        id: "octree_cube_least_squares_grow",
+        capabilities: &["DEB-14"],
+        what: "energy of the cube of mixed levels by least squares 0.4 s after it was let go with 0.49 J: more than ten times that, where neither level alone gains a fiftieth",
+        settings: &["expect=[]", "bodies.cube.octree.operators=\"least_squares\""],
+        reading: Reading::last("energy").after(40),
+        reference: 10.0 * 0.4905,
+        tolerance: Tolerance::Above,
+        source: "specification, V-09: mixed levels are far less stable than each alone; least squares, exact of every field, do not cure that, the energy does",
+        mutation: "bodies.cube.octree.fixed=\"1\"",
+        ..MIXED
+    },
     Case {
         id: "particles_4",
         what: "how often 4 x 4 x 4 particles swing, by the source's operators",

@@ -1,7 +1,7 @@
 //! Cells of points in the plane and in space: Voronoi's, the median ones of finite elements, and what flows through both.
 
 use crate::reading::Statistic;
-use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
+use crate::{Case, Limit, OperatorNumber, Reading, Refinement, Tolerance, Variant};
 
 const PLANE: Case = Case {
     id: "plane_duals_alike",
@@ -90,8 +90,168 @@ const DRIFT: Case = Case {
     mutation: "bodies.cube.formulation.dual=\"median\"",
 };
 
+/// Numbers of the operators on the mesh of a body.
+const OPERATORS: Case = Case {
+    id: "",
+    capabilities: &["DEB-26"],
+    what: "",
+    scene: "swinging_cube",
+    settings: &[CROOKED, "bodies.cube.pins=[]", "expect=[]"],
+    reading: Reading::Operator { operator: ELEMENTS, number: OperatorNumber::Asymmetry },
+    refinement: None,
+    reference: 0.0,
+    // sums of some tens of terms in the other order
+    tolerance: Tolerance::Absolute(1e-14),
+    source: "specification, V-17",
+    mutation: "",
+};
+
+const ELEMENTS: &str = "edge_tensors";
+const CELLS: &str = "gauss_voronoi, dual = voronoi";
+/// Tetrahedra of no pattern, which fill a ball.
+const CROOKED: &str =
+    r#"bodies.cube.mesh={ shape = "ellipsoid", size = 0.025, semi_axes = [0.05, 0.05, 0.05] }"#;
+
+/// Frequencies of the cube that nobody holds, K_S(2).
+const FREE: Case = Case {
+    capabilities: &["DEB-2", "DEB-26"],
+    settings: &["bodies.cube.pins=[]", r#"bodies.cube.formulation={ name = "edge_tensors" }"#],
+    reading: Reading::FreeFrequency(6),
+    // roots of rounding: 1e-16 of the highest, 130 Hz squared, and a hundred times that
+    tolerance: Tolerance::Absolute(1e-5),
+    source: "specification, V-17: eigenvalue count on K(2), six zeros of Cauchy's, three of the hybrid operator",
+    ..OPERATORS
+};
+
+/// A coarse block under the ball of a scene, which presses it by 6.5 mm and goes, with much friction.
+macro_rules! sideways {
+    ($formulation:literal) => {
+        &[
+            r#"probes={ dent = { body = "block", region = { nearest = [0.06, 0.06, 0.06] }, quantity = "displacement" }, side = { body = "block", region = { nearest = [0.12, 0.06, 0.045] }, quantity = "displacement" }, kinetic = { body = "block", quantity = "kinetic_energy" } }"#,
+            "expect=[]",
+            "bodies.block.levels=",
+            "systems.main.stepper=\"symplectic_euler\"",
+            "systems.main.steps_per_period=40",
+            "bodies.block.mesh.cells=[6, 6, 3]",
+            "bodies.block.material.name=\"linear\"",
+            concat!("bodies.block.formulation=", $formulation),
+            "bodies.block.damping={ rayleigh_mass = 400 }",
+            "shapes.ball.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.0085], [0, 0, -0.0085], [0, 0, 0]]",
+        ]
+    };
+}
+
+const SIDEWAYS: Case = Case {
+    capabilities: &["DEB-21"],
+    scene: "pressed_block",
+    source: "specification, V-21: sideways rightly; after the release slow divergence, where Cauchy's strain settles in the same conditions",
+    ..OPERATORS
+};
+
 pub(super) const CASES: &[Case] = &[
     PLANE,
+    Case {
+        id: "free_cauchy_sixth",
+        what: "the sixth lowest frequency of a free cube by Cauchy's strain: zero, as the five before it",
+        mutation: r#"bodies.cube.formulation={ name = "hybrid" }"#,
+        ..FREE
+    },
+    Case {
+        id: "free_cauchy_seventh",
+        what: "the seventh: it is none of a rigid motion",
+        reading: Reading::FreeFrequency(7),
+        reference: 1.0,
+        tolerance: Tolerance::Above,
+        mutation: "bodies.cube.material.youngs_modulus=1",
+        ..FREE
+    },
+    Case {
+        id: "free_hybrid_third",
+        capabilities: &["DEB-23", "DEB-26"],
+        what: "the third lowest frequency of a free cube by the hybrid operator: zero",
+        settings: &["bodies.cube.pins=[]"],
+        reading: Reading::FreeFrequency(3),
+        mutation: "bodies.cube.pins=[{ region = \"x_min\" }]",
+        ..FREE
+    },
+    Case {
+        id: "free_hybrid_fourth",
+        capabilities: &["DEB-23", "DEB-26"],
+        what: "the fourth, a turn, which it resists",
+        settings: &["bodies.cube.pins=[]"],
+        reading: Reading::FreeFrequency(4),
+        reference: 1.0,
+        tolerance: Tolerance::Above,
+        mutation: r#"bodies.cube.formulation={ name = "edge_tensors" }"#,
+        ..FREE
+    },
+    Case {
+        id: "operators_asymmetric",
+        capabilities: &["DEB-21", "DEB-22", "DEB-26"],
+        what: "how far `grad div` of Voronoi's cells alone is from that on the cube of 27 points: by more than a fifth of its size, by which it drifts",
+        settings: &[],
+        reading: Reading::Operator { operator: CELLS, number: OperatorNumber::GradDivAsymmetry },
+        reference: 0.2,
+        tolerance: Tolerance::AtLeast,
+        source: "specification, V-21: reported by a diagnostic; 2.8.5: 0.32 to 0.44 of other cubes as a whole",
+        mutation: "bodies.cube.mesh.cells=[8, 1, 1]",
+        ..OPERATORS
+    },
+    Case {
+        id: "operators_inner_cross_terms",
+        capabilities: &["DEB-23", "DEB-26"],
+        what: "the greatest antisymmetric part of Cauchy's Laplacian on an edge inside a ball of 10 cm, filled without a pattern [m]: they cancel",
+        reading: Reading::Operator { operator: ELEMENTS, number: OperatorNumber::InnerCrossTerms },
+        // of terms of 5 mm
+        tolerance: Tolerance::Absolute(1e-16),
+        source: "specification, V-17: zero on interior edges",
+        // of a ball of 10 km rounding alone is more
+        mutation: r#"bodies.cube.mesh={ shape = "ellipsoid", size = 2500, semi_axes = [5000, 5000, 5000] }"#,
+        ..OPERATORS
+    },
+    Case {
+        id: "operators_border_cross_terms",
+        capabilities: &["DEB-23", "DEB-26"],
+        what: "the same on an edge of the surface of the cube of 27 points, where they do not [m]: that is all by which the hybrid operator differs",
+        settings: &[],
+        reading: Reading::Operator { operator: ELEMENTS, number: OperatorNumber::BorderCrossTerms },
+        // a third of an edge of 5 cm
+        reference: 0.05 / 3.0,
+        tolerance: Tolerance::Relative(1e-12),
+        source: "specification, 2.11: 0.0167 m on boundary edges of K(2)",
+        mutation: "bodies.cube.mesh.cells=[3, 3, 3]",
+        ..OPERATORS
+    },
+    Case {
+        id: "grad_div_pushes_sideways",
+        what: "how far a side of a block comes out by `grad div` of Voronoi's cells alone while a ball presses it from above by 6.5 mm: a hundredth of that and more",
+        settings: sideways!("{ name = \"gauss_voronoi\", dual = \"voronoi\", part = \"grad_div\" }"),
+        reading: Reading::component("side", 0).after(60),
+        reference: 6.5e-5,
+        tolerance: Tolerance::AtLeast,
+        mutation: "bodies.block.formulation={ name = \"gauss_voronoi\", dual = \"voronoi\", part = \"laplacian\" }",
+        ..SIDEWAYS
+    },
+    Case {
+        id: "grad_div_diverges",
+        what: "how many times as fast as at the release the block moves two seconds later, friction or not: a hundred times and more in its energy",
+        settings: sideways!("{ name = \"gauss_voronoi\", dual = \"voronoi\", part = \"grad_div\" }"),
+        reading: Reading::last("kinetic").taking(Statistic::LastOver(130)).after(330),
+        reference: 100.0,
+        tolerance: Tolerance::Above,
+        mutation: "bodies.block.formulation={ name = \"edge_tensors\" }",
+        ..SIDEWAYS
+    },
+    Case {
+        id: "cauchy_settles",
+        capabilities: &["DEB-2"],
+        what: "dent of the same block by Cauchy's strain then: less than a thousandth of what it was pressed by",
+        settings: sideways!("{ name = \"edge_tensors\" }"),
+        reading: Reading::component("dent", 2).after(330),
+        tolerance: Tolerance::Absolute(6.5e-6),
+        mutation: "bodies.block.formulation={ name = \"gauss_voronoi\", dual = \"voronoi\", part = \"grad_div\" }",
+        ..SIDEWAYS
+    },
     Case {
         id: "plane_duals_exact",
         what: "farthest that a point is from a field of the second degree, by fluxes through Voronoi's cells of an equilateral lattice",

@@ -150,61 +150,58 @@ pub(super) const SHEARED: &[Case] = &[
         source: "specification, V-01 and V-18",
         ..DOWN
     },
-    Case {
-        id: "wall_cube_hybrid_2_down",
-        what: "the same, K_S(2)",
-        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
-        reference: -0.00721,
-        ..SHEAR_DOWN
-    },
-    Case {
-        id: "wall_cube_hybrid_2_top",
-        what: "the same edge, away from the wall: hardly, K_S(2)",
-        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
-        reference: 0.00002,
-        ..SHEAR_TOP
-    },
-    Case {
-        id: "wall_cube_hybrid_2_bottom",
-        what: "the lower far edge, away from the wall, K_S(2)",
-        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[2, 2, 2]"],
-        reference: 0.00013,
-        ..SHEAR_BOTTOM
-    },
-    Case {
-        id: "wall_cube_hybrid_mirrored_4_down",
-        what: "the upper far edge by the hybrid operator, K_M(4)",
-        settings: &[
-            "bodies.cube.material.name=\"linear\"",
-            HYBRID,
-            "bodies.cube.mesh.element=\"tet4_mirrored\"",
-        ],
-        reference: -0.00703,
-        ..SHEAR_DOWN
-    },
-    Case {
-        id: "wall_cube_hybrid_mirrored_4_top",
-        what: "the same edge, away from the wall, K_M(4)",
-        settings: &[
-            "bodies.cube.material.name=\"linear\"",
-            HYBRID,
-            "bodies.cube.mesh.element=\"tet4_mirrored\"",
-        ],
-        reference: -0.00005,
-        ..SHEAR_TOP
-    },
-    Case {
-        id: "wall_cube_hybrid_mirrored_4_bottom",
-        what: "the lower far edge, away from the wall, K_M(4)",
-        settings: &[
-            "bodies.cube.material.name=\"linear\"",
-            HYBRID,
-            "bodies.cube.mesh.element=\"tet4_mirrored\"",
-        ],
-        reference: 0.00005,
-        ..SHEAR_BOTTOM
-    },
 ];
+
+/// Settings for an element and n cells along each edge by the hybrid operator.
+macro_rules! sheared_cube {
+    ($element:literal, $cells:literal) => {
+        &[
+            "bodies.cube.material.name=\"linear\"",
+            HYBRID,
+            concat!("bodies.cube.mesh.element=\"", $element, "\""),
+            concat!("bodies.cube.mesh.cells=[", $cells, ", ", $cells, ", ", $cells, "]"),
+        ]
+    };
+}
+
+/// The three rows of an element and a number of cells by the hybrid operator; of K_S(4) and K_S(8) the first is above.
+macro_rules! sheared {
+    ($($name:literal $mesh:literal $element:literal $cells:literal: $($down:literal)? $(; $top:literal $bottom:literal)?,)+) => {
+        &[$(
+            $(Case {
+                id: concat!("wall_cube_hybrid_", $name, "_down"),
+                what: concat!("the upper far edge of the cube at the wall by the hybrid operator, ", $mesh),
+                settings: sheared_cube!($element, $cells),
+                reference: $down,
+                ..SHEAR_DOWN
+            },)?
+            $(Case {
+                id: concat!("wall_cube_hybrid_", $name, "_top"),
+                what: concat!("the same edge, away from the wall: hardly, ", $mesh),
+                settings: sheared_cube!($element, $cells),
+                reference: $top,
+                ..SHEAR_TOP
+            },
+            Case {
+                id: concat!("wall_cube_hybrid_", $name, "_bottom"),
+                what: concat!("the lower far edge, away from the wall, ", $mesh),
+                settings: sheared_cube!($element, $cells),
+                reference: $bottom,
+                ..SHEAR_BOTTOM
+            },)?
+        )+]
+    };
+}
+
+/// The column of V-01's table that is the hybrid operator's.
+pub(super) const SHEARED_MESHES: &[Case] = sheared! {
+    "2" "K_S(2)" "tet4" "2": -0.00721; 0.00002 0.00013,
+    "4" "K_S(4)" "tet4" "4": ; 0.00001 0.00004,
+    "8" "K_S(8)" "tet4" "8": ; 0.0 0.00001,
+    "mirrored_2" "K_M(2)" "tet4_mirrored" "2": -0.00710; -0.00014 0.00014,
+    "mirrored_4" "K_M(4)" "tet4_mirrored" "4": -0.00703; -0.00005 0.00005,
+    "mirrored_8" "K_M(8)" "tet4_mirrored" "8": -0.00701; -0.00002 0.00002,
+};
 
 const SHEAR_DOWN: Case = Case { capabilities: &["DEB-23"], source: "specification, V-01 and V-18", ..DOWN };
 /// By Cauchy's strain the edges move along the wall's normal by a millimetre and more.

@@ -20,6 +20,8 @@ pub struct OperatorQuality {
     pub operator: &'static str,
     /// `|K - Kᵀ|/|K|`.
     pub asymmetry: f64,
+    /// The same of `grad div` alone.
+    pub grad_div_asymmetry: f64,
     /// At which a motion without any outer force grows in the end [1/s].
     pub growth_rate: f64,
     /// Greatest error of the Laplacian of a quadratic field at a point inside, over that of its greatest second derivative.
@@ -157,6 +159,7 @@ pub fn operator_quality(
         OperatorQuality {
             operator: name,
             asymmetry: whole.asymmetry(),
+            grad_div_asymmetry: grad_div.asymmetry(),
             growth_rate: growth_rate(&whole, &masses),
             laplacian_error: error(&body, &laplacian, volumes, &border, Operator::Laplacian),
             grad_div_error: error(&body, &grad_div, volumes, &border, Operator::GradDiv),
@@ -399,6 +402,10 @@ mod tests {
             }
             assert!(compared > 50);
             let found = operator_quality(&mesh, MODULI, 1000.0).unwrap();
+            // cross terms of a triangle are 1/2 on each of its edges, which the next one takes away
+            let elastic = named(&found, "edge_tensors");
+            assert!(elastic.inner_cross_terms < 1e-14, "{elastic:?}");
+            assert!((elastic.border_cross_terms - 0.5).abs() < 1e-14, "{elastic:?}");
             for name in ["hybrid", "gauss_voronoi, dual = voronoi"] {
                 let OperatorQuality { laplacian_error, grad_div_error, .. } = *named(&found, name);
                 let is_small = |error: f64| error < 1e-10;
