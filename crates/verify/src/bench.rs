@@ -205,7 +205,7 @@ pub const BENCHES: &[Bench] = &[
     },
     Bench {
         name: "adaptive_saving",
-        what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
+        what: "active points of a block and of the organ while a tool is held in them, all fine over adaptive, with errors of force and surface",
         run: levels::adaptive_saving,
     },
     Bench {
