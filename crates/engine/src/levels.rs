@@ -146,6 +146,12 @@ pub trait Levels: Send + Sync {
     /// Rows of the active points, ascending.
     fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32];
 
+    /// How far each of the rows has been moved so far because others came to be at work, as the last choice left it [m]; nothing of bodies
+    /// that do not tell.
+    fn moved<'a>(&self, _scratch: &'a Scratch) -> &'a [Vec3] {
+        &[]
+    }
+
     /// Moves active points by `x += h v`, after their velocities have faded as long.
     fn drift(&self, timestep: f64, scratch: &Scratch, rows: &mut Rows);
 

@@ -85,6 +85,13 @@ impl<'a> CommittedRows<'a> {
         let levels = self.systems[system].forces[force].levels()?;
         Some(levels.active(&self.workspaces[system].scratches[force]))
     }
+
+    /// How far each point of a body with levels has been moved so far because others came to be at work [m]; `None` where the force is of
+    /// no such body.
+    pub fn moved(&self, system: usize, force: usize) -> Option<&'a [Vec3]> {
+        let levels = self.systems[system].forces[force].levels()?;
+        Some(levels.moved(&self.workspaces[system].scratches[force]))
+    }
 }
 
 /// The constant part of a world.

@@ -151,7 +151,7 @@ impl LevelsForce {
         let (mut law_memory, mut forces) = (std::mem::take(&mut work.stress), std::mem::take(&mut work.sums));
         self.sum_all(Answer::Stress, values, work, &mut law_memory, &mut forces);
         let urges = self.urges();
-        memory[urges..].fill(0.0);
+        memory[urges..self.moved()].fill(0.0);
         for point in &work.active {
             let point = *point as usize;
             let change = forces[point].length() / work.masses[point] * division.timestep;
@@ -164,8 +164,9 @@ impl LevelsForce {
         work.refresh(self, memory);
     }
 
-    /// What others being active does to rows: they follow anew, and keep the momentum of the matter.
-    pub(super) fn change_over(&self, rows: &mut Rows, work: &Work) {
+    /// What others being active does to rows: they follow anew, and keep the momentum of the matter. How far that moves them is summed
+    /// up in `memory`.
+    pub(super) fn change_over(&self, rows: &mut Rows, memory: &mut [f64], work: &Work) {
         let velocities = &mut rows.velocities[self.rows()];
         let momentum = |velocities: &[Vec3]| -> Vec3 {
             self.finest_masses.iter().zip(velocities).map(|(mass, v)| *v * *mass).sum()
@@ -177,7 +178,12 @@ impl LevelsForce {
             let shift = lost / self.finest_masses.iter().sum::<f64>();
             velocities.iter_mut().for_each(|v| *v += shift);
         }
-        self.place(work, Followers::All, Kinematic::Position, &mut rows.positions[self.rows()]);
+        let positions = &mut rows.positions[self.rows()];
+        self.place(work, Followers::All, Kinematic::Position, positions);
+        let moves = positions.iter().zip(&work.followed).map(|(after, before)| *after - *before);
+        for (sum, step) in memory[self.moved()..].as_chunks_mut::<3>().0.iter_mut().zip(moves) {
+            *sum = (Vec3::from_array(*sum) + step).to_array();
+        }
     }
 }
 

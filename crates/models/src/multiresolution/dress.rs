@@ -1,34 +1,31 @@
 //! A display surface that follows a body of several meshes, whichever of them is at work (Debunne 2000, 6 §1).
 //!
-//! Each node of the surface is tied to a triangle of the boundary of *every* mesh: the one that is closest at rest, a place on
-//! it, and an offset in the triangle's own frame, which turns with it. Of these ties the finest counts whose triangle has a
-//! point at work. The source takes weights by the inverse of distances to the corners; with those a node of an evenly
-//! stretched body would leave its place, with the place on the triangle it does not.
+//! Each node of the surface is tied to a tetrahedron of *every* mesh by barycentric weights, which extrapolate where it stands
+//! off: whatever affine map the body is moved by, all ties have the node at the same place, turned, stretched or sheared. Points
+//! of all meshes are brought to where they follow in every step, so that the finest tie holds whoever is at work: its points are
+//! active or follow. The source ties to three points of the boundary with offsets, and weights by the inverse of distances to
+//! the corners; with those a node of an evenly stretched body would leave its place.
 //!
-//! When others come to be at work, a tie would make the node jump. What it would jump by is taken as an offset that fades
-//! evenly: the surface never pops. All of that evolves, so it is a field of State.
+//! Where finer points come, they come where they have followed, and nothing jumps. Where others come to be followed, points are
+//! moved ([`Levels::moved`]); what a node would jump by is taken as an offset that fades evenly: the surface never pops. All of
+//! that evolves, so it is a field of State.
+//!
+//! [`Levels::moved`]: souple_engine::levels::Levels::moved
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use souple_engine::{CommittedRows, Field, FieldState, FieldStep, Scratch, StepError};
-use souple_math::{Mat3, Vec3};
-use souple_mesh::{Aabb, AabbTree, TriangleSurface, closest_point_on_triangle};
+use souple_math::Vec3;
+use souple_mesh::{Mesh, TriangleSurface};
+
+use super::LevelsForce;
 
 /// How a node hangs on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Tie {
-    /// Rows of the triangle's corners.
-    corners: [u32; 3],
-    weights: [f64; 3],
-    /// From the place on the triangle to the node, in the triangle's frame [m].
-    offset: Vec3,
-}
-
-/// A mesh that a node may hang on: its boundary at rest, and the rows of its points.
-pub struct DressLevel {
-    pub surface: TriangleSurface,
-    pub rows: Range<u32>,
+    /// Rows of the tetrahedron's corners.
+    corners: [u32; 4],
+    weights: [f64; 4],
 }
 
 /// The display surface of a body with levels.
@@ -37,16 +34,18 @@ pub struct Dress {
     name: String,
     /// Index of the body's system, and of its elastic force there.
     of: [usize; 2],
+    /// Row of the body's first point.
+    first_row: usize,
     /// At rest.
     surface: TriangleSurface,
-    /// By node, from coarse to fine.
+    /// By level, from coarse to fine, and by node.
     ties: Vec<Vec<Tie>>,
     /// Time in which a jump fades [s].
     blend: f64,
 }
 
-/// Numbers of a node: where it is, what is left of a jump, and when that was.
-const PER_NODE: usize = 7;
+/// Numbers of a node: where it is, what is left of a jump and when that was, and how far its points had been moved.
+const PER_NODE: usize = 10;
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Node {
@@ -55,75 +54,56 @@ struct Node {
     jump: Vec3,
     /// Time since then [s].
     age: f64,
+    /// How far others coming to be at work have moved its tie, all in all [m].
+    moved: Vec3,
 }
 
 impl Node {
     fn read(numbers: &[f64]) -> Self {
         let vector = |at: usize| Vec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
-        Self { shown: vector(0), jump: vector(3), age: numbers[6] }
+        Self { shown: vector(0), jump: vector(3), age: numbers[6], moved: vector(7) }
     }
 
     fn write(self, numbers: &mut [f64]) {
         numbers[..3].copy_from_slice(&self.shown.to_array());
         numbers[3..6].copy_from_slice(&self.jump.to_array());
         numbers[6] = self.age;
+        numbers[7..].copy_from_slice(&self.moved.to_array());
     }
-}
-
-/// Axes along the first edge, along the normal, and across both; `None` of a triangle squeezed to a line.
-fn frame([a, b, c]: [Vec3; 3]) -> Option<Mat3> {
-    let along = (b - a).try_normalised()?;
-    let normal = (b - a).cross(c - a).try_normalised()?;
-    Some(Mat3::from_columns(along, normal, along.cross(normal)))
 }
 
 impl Tie {
-    fn place(&self, values: &[Vec3]) -> Vec3 {
-        self.corners.iter().zip(self.weights).map(|(corner, weight)| values[*corner as usize] * weight).sum()
+    /// What the node has, of values on rows that begin with `first`.
+    fn of(&self, values: &[Vec3], first: usize) -> Vec3 {
+        let value = |corner: u32| values[corner as usize - first];
+        self.corners.iter().zip(self.weights).map(|(corner, weight)| value(*corner) * weight).sum()
     }
 
-    /// Where the node is by this tie.
-    fn node(&self, positions: &[Vec3]) -> Vec3 {
-        let frame = frame(self.corners.map(|corner| positions[corner as usize]));
-        self.place(positions) + frame.map_or(Vec3::ZERO, |frame| frame * self.offset)
+    fn is_at_work(&self, active: &[u32]) -> bool {
+        self.corners.iter().any(|corner| active.binary_search(corner).is_ok())
     }
 }
 
 impl Dress {
-    /// Levels from coarse to fine; `of` are the numbers of the body's system and of its force there, `blend` the time in
-    /// which jumps fade [s]. Nodes and levels stand at rest.
+    /// Of a body and its meshes, from coarse to fine; `of` are the numbers of the body's system and of its force there, `blend` the
+    /// time in which jumps fade [s]. Nodes stand at rest.
     pub fn new(
         name: String,
         of: [usize; 2],
         surface: TriangleSurface,
-        levels: &[DressLevel],
+        (force, meshes): (&LevelsForce, &[&Mesh]),
         blend: f64,
     ) -> Self {
-        let mut ties = vec![Vec::with_capacity(levels.len()); surface.points.len()];
-        for DressLevel { surface: boundary, rows } in levels {
-            let boxes: Vec<Aabb> =
-                (0..boundary.triangles.len() as u32).map(|t| Aabb::of(boundary.corners(t))).collect();
-            let tree = AabbTree::build(&boxes);
-            for (node, ties) in surface.points.iter().zip(&mut ties) {
-                let place = |triangle: u32| {
-                    let corners = boundary.corners(triangle);
-                    let (weights, _) = closest_point_on_triangle(*node, corners);
-                    let on: Vec3 = corners.into_iter().zip(weights).map(|(corner, w)| corner * w).sum();
-                    (weights, on)
-                };
-                let distance_sq = |triangle: u32| (*node - place(triangle).1).length_sq();
-                let Some((triangle, _)) = tree.nearest(*node, f64::INFINITY, distance_sq) else { continue };
-                let (weights, on) = place(triangle);
-                let axes = frame(boundary.corners(triangle)).unwrap_or(Mat3::IDENTITY);
-                let point = |corner: u32| rows.start + boundary.mesh_points[corner as usize];
-                ties.push(Tie {
-                    corners: boundary.triangles[triangle as usize].map(point),
-                    weights,
-                    offset: axes.transpose() * (*node - on),
-                });
-            }
-        }
-        Self { name, of, surface, ties, blend }
+        let first_row = force.first_row;
+        let ties = meshes.iter().enumerate().map(|(level, mesh)| {
+            let carriers = force.hierarchy().carriers(level, mesh, &surface.points);
+            let row = |corner: u32| first_row as u32 + corner;
+            carriers
+                .into_iter()
+                .map(|carrier| Tie { corners: carrier.corners.map(row), weights: carrier.weights })
+                .collect()
+        });
+        Self { name, of, first_row, ties: ties.collect(), surface, blend }
     }
 
     pub fn triangles(&self) -> &[[u32; 3]] {
@@ -137,23 +117,23 @@ impl Dress {
 
     /// The state before anything has moved.
     pub fn start(&self) -> FieldState {
-        let count = self.ties.len();
-        let mut state = FieldState { values: vec![0.0; PER_NODE * count + 1], indices: vec![UNKNOWN; count] };
+        let count = self.surface.points.len();
+        let mut state = FieldState { values: vec![0.0; PER_NODE * count + 1], indices: vec![0; count] };
         for (shown, numbers) in self.surface.points.iter().zip(state.values.chunks_exact_mut(PER_NODE)) {
-            Node { shown: *shown, jump: Vec3::ZERO, age: self.blend }.write(numbers);
+            Node { shown: *shown, age: self.blend, ..Node::default() }.write(numbers);
         }
         state
     }
 
     /// Where nodes are [m].
     pub fn points<'a>(&self, state: &'a FieldState) -> impl ExactSizeIterator<Item = Vec3> + 'a {
-        let count = self.ties.len();
+        let count = self.surface.points.len();
         state.values[..PER_NODE * count].chunks_exact(PER_NODE).map(|numbers| Node::read(numbers).shown)
     }
 
-    /// Of each node, the level that it hangs on, counted from the coarsest.
+    /// Of each node, the finest level that is at work where it hangs, counted from the coarsest.
     pub fn levels<'a>(&self, state: &'a FieldState) -> impl ExactSizeIterator<Item = u64> + 'a {
-        state.indices.iter().map(|pattern| if *pattern == UNKNOWN { 0 } else { pattern / PATTERNS })
+        state.indices.iter().copied()
     }
 
     /// The most that a node has jumped from one period to the next because others came to be at work [m].
@@ -164,17 +144,6 @@ impl Dress {
     fn share(&self, age: f64) -> f64 {
         if self.blend > 0.0 { (1.0 - age / self.blend).max(0.0) } else { 0.0 }
     }
-}
-
-/// The level of a node times so many, plus which corners of its triangle are at work.
-const PATTERNS: u64 = 8;
-/// Of a node that has not been placed yet.
-const UNKNOWN: u64 = u64::MAX;
-
-/// Which corners are at work.
-fn pattern(tie: &Tie, active: &[u32]) -> u64 {
-    let is_active = |corner: &u32| active.binary_search(corner).is_ok();
-    (0..3).filter(|k: &usize| is_active(&tie.corners[*k])).map(|k| 1_u64 << k).sum()
 }
 
 /// A dress that others hold too, as a field of the world.
@@ -204,31 +173,29 @@ impl Field for Worn {
         let [system, force] = dress.of;
         let now = rows.of(system);
         let active = rows.active(system, force).unwrap_or(&[]);
+        let moved = rows.moved(system, force).unwrap_or(&[]);
+        let Some(finest) = dress.ties.last() else { return Ok(()) };
         let mut greatest = dress.greatest_jump(field);
-        for (index, ties) in dress.ties.iter().enumerate() {
-            let patterns = ties.iter().enumerate().rev().map(|(level, tie)| (level, pattern(tie, active)));
-            let finest = patterns.clone().find(|(_, pattern)| *pattern != 0);
-            let Some((level, pattern)) = finest.or_else(|| patterns.clone().next()) else { continue };
-            let (tie, code) = (&ties[level], level as u64 * PATTERNS + pattern);
+        for (index, tie) in finest.iter().enumerate() {
+            let at_work = dress.ties.iter().rposition(|ties| ties[index].is_at_work(active));
+            field.indices[index] = at_work.unwrap_or(0) as u64;
             let numbers = &mut field.values[PER_NODE * index..][..PER_NODE];
             let mut node = Node::read(numbers);
-            let target = tie.node(&now.positions);
-            let before = std::mem::replace(&mut field.indices[index], code);
-            if before != code && before != UNKNOWN {
-                // where it would have come to by itself
-                let moved = node.shown + tie.place(&now.velocities) * step.timestep;
-                (node.jump, node.age) = (moved - target, 0.0);
+            let moved = tie.of(moved, dress.first_row);
+            if moved != node.moved {
+                node.jump = node.jump * dress.share(node.age) - (moved - node.moved);
+                (node.age, node.moved) = (0.0, moved);
             }
             let share = dress.share(node.age);
             node.age = (node.age + step.timestep).min(dress.blend);
             let left = dress.share(node.age);
-            greatest =
-                greatest.max(node.jump.length() * (if dress.blend > 0.0 { share - left } else { 0.0 }));
-            if dress.blend == 0.0 && node.jump != Vec3::ZERO {
-                greatest = greatest.max(node.jump.length());
+            // without a blend there is no share that could be left
+            let fades = if dress.blend > 0.0 { share - left } else { 1.0 };
+            greatest = greatest.max(node.jump.length() * fades);
+            if left == 0.0 {
                 node.jump = Vec3::ZERO;
             }
-            node.shown = target + node.jump * left;
+            node.shown = tie.of(&now.positions, 0) + node.jump * left;
             node.write(numbers);
         }
         if let Some(most) = field.values.last_mut() {
@@ -246,52 +213,68 @@ impl Field for Worn {
 
 #[cfg(test)]
 mod tests {
-    use souple_math::exponential;
+    use souple_formal::Formula;
+    use souple_math::{Mat3, exponential};
     use souple_table::{Value, Values};
 
     use super::*;
+    use crate::materials::TABLE;
+    use crate::multiresolution::{Choice, Coupling, LevelsDescription, Loops, PLACE_VARIABLES, Stiffness};
 
-    /// Boundary of a cube of 10 cm; its points are rows from `first` on.
-    fn level(cells: f64, first: u32) -> (DressLevel, Vec<Vec3>) {
+    /// A cube of 10 cm.
+    fn cube(cells: f64) -> Mesh {
         let values = Values::new()
             .with("size", Value::Vector([0.1; 3]))
             .with("cells", Value::Vector([cells; 3]))
             .with("element", Value::Text("tet4"));
         let mut mesh = souple_mesh::generate("bar", values).unwrap();
         mesh.validate().unwrap();
-        let rows = first..first + mesh.points.len() as u32;
-        (DressLevel { surface: mesh.boundary_surface(), rows }, mesh.points)
+        mesh
     }
 
-    /// At rest all ties have a node at the same place, so that nothing pops; turned by any angle they have it there too,
-    /// also nodes that stand off the meshes; and stretched evenly, nodes on the meshes stay on them.
+    /// The ties of every level have every node where any affine motion of the body has it, also nodes that stand off the meshes:
+    /// at rest and under any linear displacement nothing pops.
     #[test]
     fn ties_of_all_levels_agree() {
-        let (coarse, mut rest) = level(2.0, 0);
-        let (fine, points) = level(5.0, rest.len() as u32);
-        rest.extend(points);
-        let (nodes, _) = level(7.0, 0);
-        let mut surface = nodes.surface;
+        let meshes = [cube(2.0), cube(5.0)];
+        let [coarse, fine] = &meshes;
+        let values = Values::new().with("youngs_modulus", Value::Number(1e4));
+        let entry = TABLE.find("linear").unwrap();
+        let values = values.with("poissons_ratio", Value::Number(0.3)).with("density", Value::Number(1e3));
+        let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
+        let force = LevelsForce::new(LevelsDescription {
+            name: "body".to_owned(),
+            meshes: &[coarse, fine],
+            first_row: 0,
+            materials: &[material],
+            material_of_cell: &vec![0; fine.cell_count()],
+            coupling: Coupling::Transpose,
+            loops: Loops::Activated,
+            stiffness: Stiffness::Own,
+            choice: Choice::Fixed(Formula::compile("0", &PLACE_VARIABLES).unwrap()),
+            viscosity: 0.0,
+            mass_damping: 0.0,
+            budget: None,
+            cuts: Vec::new(),
+        })
+        .unwrap();
+        let mut surface = cube(7.0).boundary_surface();
         // half of them stand off
         for (index, point) in surface.points.iter_mut().enumerate().filter(|(index, _)| index % 2 == 0) {
             *point += (*point - Vec3::new(0.05, 0.05, 0.05)) * (0.03 + 1e-4 * index as f64);
         }
-        let dress = Dress::new("dress".to_owned(), [0, 0], surface, &[coarse, fine], 0.1);
-        let greatest = |to: &dyn Fn(Vec3) -> Vec3, every: usize| {
-            let positions: Vec<Vec3> = rest.iter().map(|x| to(*x)).collect();
-            let nodes = dress.rest().iter().zip(&dress.ties).enumerate();
-            let chosen = nodes.filter(|(index, _)| index % every == every - 1).map(|(_, node)| node);
-            chosen
-                .flat_map(|(x, ties)| ties.iter().map(|tie| (tie.node(&positions) - to(*x)).length()))
-                .fold(0.0, f64::max)
+        let dress = Dress::new("dress".to_owned(), [0, 0], surface, (&force, &[coarse, fine]), 0.1);
+        let greatest = |map: Mat3, away: Vec3| {
+            let to = |x: &Vec3| map * *x + away;
+            let positions: Vec<Vec3> = force.hierarchy().rest.iter().map(to).collect();
+            let off = |(x, tie): (&Vec3, &Tie)| (tie.of(&positions, 0) - to(x)).length();
+            dress.ties.iter().flat_map(|ties| dress.rest().iter().zip(ties)).map(off).fold(0.0, f64::max)
         };
-        assert!(greatest(&|x| x, 1) < 1e-15);
+        assert!(greatest(Mat3::IDENTITY, Vec3::ZERO) < 1e-15);
         let turn = exponential(Vec3::new(1.9, -0.7, 1.1));
-        assert!(greatest(&|x| turn * x + Vec3::new(0.2, 0.0, -0.1), 1) < 1e-14);
-        // those that do not stand off
-        let stretch = |x: Vec3| Vec3::new(1.3 * x.x + 0.2 * x.y, 0.9 * x.y, 1.1 * x.z - 0.3 * x.x);
-        assert!(greatest(&stretch, 2) < 1e-14);
-        // weights by the inverse of distances, the source's, would move them by a good part of an edge
-        assert!(greatest(&stretch, 1) > 1e-4);
+        assert!(greatest(turn, Vec3::new(0.2, 0.0, -0.1)) < 1e-14);
+        let stretch =
+            Mat3::from_columns(Vec3::new(1.3, 0.0, -0.3), Vec3::new(0.2, 0.9, 0.0), Vec3::new(0.0, 0.0, 1.1));
+        assert!(greatest(stretch, Vec3::ZERO) < 1e-14);
     }
 }

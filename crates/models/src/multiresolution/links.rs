@@ -269,6 +269,18 @@ impl Hierarchy {
     }
 }
 
+impl Hierarchy {
+    /// What places at rest would hang on in a level, whose mesh that is.
+    pub fn carriers(&self, level: usize, mesh: &Mesh, places: &[Vec3]) -> Vec<Carrier> {
+        let locator = CellLocator::new(mesh);
+        let found = |place: &Vec3| self.carrier(&locator, level, *place);
+        places
+            .iter()
+            .map(|place| found(place).unwrap_or_else(|| unreachable!("a place is finite, a mesh has cells")))
+            .collect()
+    }
+}
+
 fn check(meshes: &[&Mesh]) -> Result<(), LevelsError> {
     if meshes.is_empty() || meshes.len() > MOST {
         return Err(LevelsError::Count { count: meshes.len() });

@@ -54,6 +54,10 @@ pub struct Work {
     pub before: Vec<u32>,
     /// How fine all points were before.
     pub were: Vec<u8>,
+    /// Where all points were before, by those that were active then [m].
+    pub followed: Vec<Vec3>,
+    /// How far each point has been moved so far because others came to be at work, by the memory [m].
+    pub moved: Vec<Vec3>,
     pub stress: LawMemory,
     /// Of each point: what all samples together push it with.
     pub sums: Vec<Vec3>,
@@ -92,6 +96,8 @@ impl Work {
             unwanted: Vec::new(),
             before: Vec::new(),
             were: Vec::new(),
+            followed: Vec::new(),
+            moved: vec![Vec3::ZERO; force.hierarchy.point_count()],
             stress: LawMemory::new(&force.matter, Answer::Stress),
             sums: Vec::new(),
             stiffness: Vec::new(),
@@ -103,7 +109,7 @@ impl Work {
 
     /// Brings roles, weights, masses and volumes to a memory.
     pub fn refresh(&mut self, force: &LevelsForce, memory: &[f64]) {
-        let urges = &memory[force.urges()..];
+        let urges = &memory[force.urges()..force.moved()];
         if self.urges != urges {
             self.urges.clear();
             self.urges.extend_from_slice(urges);

@@ -50,7 +50,7 @@ use matter::Matter;
 use souple_engine::levels::Followers;
 
 pub use criterion::{Criterion, Measure};
-pub use dress::{Dress, DressLevel, Worn};
+pub use dress::{Dress, Worn};
 pub use links::{Hierarchy, LevelsError, Loops, MOST};
 pub use roles::Role;
 
@@ -297,6 +297,11 @@ impl LevelsForce {
         self.stays() + stays::len(self.hierarchy.point_count())
     }
 
+    /// Where memory sums up how far each point has been moved because others came to be at work.
+    fn moved(&self) -> usize {
+        self.urges() + self.hierarchy.point_count()
+    }
+
     /// Values of this body's points among those on rows.
     fn own<'a>(&self, values: &'a [Vec3]) -> &'a [Vec3] {
         &values[self.rows()]
@@ -370,9 +375,9 @@ impl Force for LevelsForce {
     }
 
     /// Which points are subdivided, for how many steps the budget has been overdrawn, how many cuts are made; then how long points stay,
-    /// and the rates that their velocities ask for.
+    /// the rates that their velocities ask for, and how far others coming to be at work have moved them.
     fn memory_len(&self) -> usize {
-        self.urges() + self.hierarchy.point_count()
+        self.moved() + 3 * self.hierarchy.point_count()
     }
 
     fn new_scratch(&self) -> Scratch {

@@ -100,18 +100,30 @@ impl Levels for LevelsForce {
         work.before.clone_from(&work.active);
         work.were.clear();
         work.were.extend(work.roles.fineness());
+        // where they follow, without what holds them elsewhere
+        let mut followed = std::mem::take(&mut work.followed);
+        followed.clear();
+        followed.extend_from_slice(self.own(&rows.positions));
+        self.place(work, Followers::All, Kinematic::Position, &mut followed);
+        work.followed = followed;
         self.choose(division, rows, memory, work);
         if work.active != work.before {
-            self.change_over(rows, work);
+            self.change_over(rows, memory, work);
             let log = &mut memory[self.stays()..self.urges()];
             stays::note(&work.were, work.roles.fineness(), rows.time, log);
         }
         self.urge(division, rows, memory, work);
         work.divide(self, division);
+        work.moved.clear();
+        work.moved.extend(memory[self.moved()..].as_chunks::<3>().0.iter().map(|sum| Vec3::from_array(*sum)));
     }
 
     fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32] {
         &read(scratch).active_rows
+    }
+
+    fn moved<'a>(&self, scratch: &'a Scratch) -> &'a [Vec3] {
+        &read(scratch).moved
     }
 
     fn accelerate(

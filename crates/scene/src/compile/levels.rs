@@ -8,9 +8,7 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
-use souple_models::multiresolution::{
-    Coupling, Cut, Dress, DressLevel, LevelsDescription, LevelsForce, Worn,
-};
+use souple_models::multiresolution::{Coupling, Cut, Dress, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
 use souple_table::Value;
 
@@ -258,14 +256,13 @@ fn dress(draft: &Draft, body: &Placed) -> Option<Dress> {
         Some(mesh) => shape::build_of(body.spec, mesh, draft)?.mesh.boundary_surface(),
         None => body.mesh.boundary_surface(),
     };
-    let level = |placed: &Placed| DressLevel {
-        surface: placed.mesh.boundary_surface(),
-        rows: placed.rows.start as u32..placed.rows.end as u32,
-    };
-    let all: Vec<DressLevel> = levels.coarser.iter().chain([body]).map(level).collect();
-    let force = solid_name(&body.spec.name);
-    let of = draft.systems[body.system].forces.iter().position(|candidate| candidate.name() == force)?;
-    Some(Dress::new(format!("{}.dress", body.spec.name), [body.system, of], surface, &all, spec.blend))
+    let meshes: Vec<&Mesh> = levels.coarser.iter().chain([body]).map(|placed| &placed.mesh).collect();
+    let name = solid_name(&body.spec.name);
+    let forces = &draft.systems[body.system].forces;
+    let of = forces.iter().position(|candidate| candidate.name() == name)?;
+    let force = forces[of].as_any().downcast_ref::<LevelsForce>()?;
+    let name = format!("{}.dress", body.spec.name);
+    Some(Dress::new(name, [body.system, of], surface, (force, &meshes), spec.blend))
 }
 
 /// Rest positions and start velocities of the coarser points: `v + ω × (x - c)` as those of the body.
