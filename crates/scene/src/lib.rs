@@ -8,6 +8,7 @@ mod adjust;
 mod compile;
 pub mod diagnostic;
 mod document;
+mod ground;
 mod include;
 pub mod inputs;
 mod keys;
@@ -26,6 +27,7 @@ mod values;
 pub use adjust::Adjustable;
 pub use compile::{FillInfo, LawInfo, NetworkInfo};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
+pub use ground::grounds;
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
 pub use scene::{

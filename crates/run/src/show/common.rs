@@ -195,7 +195,9 @@ impl<'a> Gathering<'a> {
             refuse_unknown_vectors(moment, &arrows.field)?;
         }
         for body in moment.bodies.iter().filter(|body| body.is_drawable()) {
-            for (point, ball) in body.balls().enumerate() {
+            let grounds = body.grounds();
+            let is_ground = |point: usize| grounds.get(point) == Some(&true);
+            for (point, ball) in body.balls().enumerate().filter(|(point, _)| !is_ground(*point)) {
                 self.bounds = self.bounds.union(BoundingBox::of([ball.centre]).grown(ball.radius));
                 // what is cut away is not made room for
                 if figure.is_left(body.positions[point]) {
@@ -393,6 +395,11 @@ impl BodyMoment {
     fn balls(&self) -> impl Iterator<Item = Framed> + '_ {
         let radius = |point: usize| self.radii().map_or(0.0, |radii| radii[point].max(0.0));
         self.positions.iter().enumerate().map(move |(point, x)| Framed { centre: *x, radius: radius(point) })
+    }
+
+    /// Of each point of a network whether it stands for ground or a wall, which nothing makes room for and which throws no shade.
+    pub(super) fn grounds(&self) -> Vec<bool> {
+        souple_scene::grounds(&self.mesh, self.radii().unwrap_or_default())
     }
 
     /// Of each point that is a ball [m]; `None` where none is.

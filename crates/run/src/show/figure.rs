@@ -304,7 +304,11 @@ impl Figure {
             None => vec![painted(self.surface(body, common), 0)],
         };
         if let Some(radii) = body.radii() {
-            let (mut of, from) = Surface::of_balls(&body.positions, radii, self.cut);
+            let grounds = body.grounds();
+            let seen =
+                radii.iter().zip(&grounds).map(|(radius, is_ground)| if *is_ground { 0.0 } else { *radius });
+            let seen: Vec<f64> = seen.collect();
+            let (mut of, from) = Surface::of_balls(&body.positions, &seen, self.cut);
             of.paint = match &values {
                 Some(values) => {
                     Paint::PointScalar(from.iter().map(|point| values[*point as usize]).collect())

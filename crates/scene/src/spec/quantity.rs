@@ -68,6 +68,7 @@ pub enum ContourQuantity {
     Lines,
     Apart,
     Roundness,
+    Turn,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -628,6 +629,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "4 pi A/L^2 of its area and length: 1 for a circle, 1/n for n equal ones, less for all else",
         OUTLINE,
         contour("", ContourQuantity::Roundness),
+    ),
+    &entry(
+        "contour.turn",
+        "by how much the masses of the contour have turned as a whole since their rest, from the first of the axes in its plane towards the second, between -pi and pi [rad]",
+        OUTLINE,
+        contour("rad", ContourQuantity::Turn),
     ),
     &entry(
         "levels.active",

@@ -23,9 +23,10 @@ impl Stage {
         let mut binary = |message: Vec<u8>| tell(Outgoing::Binary(Arc::from(message)));
         let bodies = self.session().bodies.iter().zip(self.shown());
         for (index, (body, shown)) in bodies.clone().enumerate() {
-            let (index, radii) = (index as u16, &body.radii);
-            if !shown.links.is_empty() || !radii.is_empty() {
-                binary(protocol::network(self.number(), index, &shown.links, radii));
+            if !shown.links.is_empty() || !body.radii.is_empty() {
+                let radius = |point: &u32| body.radii.get(*point as usize).copied();
+                let radii: Vec<f64> = shown.points.iter().filter_map(radius).collect();
+                binary(protocol::network(self.number(), index as u16, &shown.links, &radii));
             }
         }
         let rest = |(body, shown): (&BodyInfo, &super::Shown)| {

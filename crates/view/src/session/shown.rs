@@ -7,7 +7,8 @@ use souple_scene::BodyInfo;
 
 /// A body as pages see it.
 pub struct Shown {
-    /// Points of the mesh as pages count them: those on its surface, or all of a body without one, then the others.
+    /// Points of the mesh as pages count them: those on its surface, or all of a body without one, then the others; without balls
+    /// that stand for ground and walls.
     pub points: Vec<u32>,
     /// How many of them are drawn while nobody looks inside.
     pub outer_count: usize,
@@ -39,6 +40,8 @@ impl Shown {
         let mut is_listed = vec![false; mesh.points.len()];
         points.iter().for_each(|point| is_listed[*point as usize] = true);
         points.extend((0..mesh.points.len() as u32).filter(|point| !is_listed[*point as usize]));
+        let grounds = souple_scene::grounds(mesh, &body.radii);
+        points.retain(|point| grounds.get(*point as usize) != Some(&true));
         let outer_count = if has_inside(mesh) { mesh_points.len() } else { points.len() };
         let outer_cells = CellsAbout::new(mesh, &points[..outer_count]);
         let mut shown = Self {
@@ -51,7 +54,7 @@ impl Shown {
             outer_cells,
             all_cells: OnceLock::new(),
         };
-        let number = shown.numbers();
+        let number = shown.numbers(mesh);
         let numbered = |pair: [u32; 2]| pair.map(|point| number[point as usize]);
         shown.edges = mesh.boundary_edges().into_iter().map(numbered).collect();
         if mesh.dimension() == 1 {
@@ -78,8 +81,8 @@ impl Shown {
     }
 
     /// The number that each point of the mesh has among `points`.
-    fn numbers(&self) -> Vec<u32> {
-        let mut numbers = vec![0; self.points.len()];
+    fn numbers(&self, mesh: &Mesh) -> Vec<u32> {
+        let mut numbers = vec![0; mesh.points.len()];
         for (number, point) in self.points.iter().enumerate() {
             numbers[*point as usize] = number as u32;
         }
@@ -91,7 +94,7 @@ impl Shown {
         if !has_inside(mesh) {
             return None;
         }
-        let number = self.numbers();
+        let number = self.numbers(mesh);
         let mut inside = Inside { tetrahedra: Vec::new(), triangles: Vec::new() };
         for (cell, view) in mesh.cells().enumerate().filter(|(_, view)| view.kind.dimension() == 3) {
             let apex = view.nodes[0];

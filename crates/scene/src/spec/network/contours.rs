@@ -1,4 +1,4 @@
-//! Contours of the masses of a network: three ways to tell where an object ends.
+//! Contours of the masses of a network: ways to tell where an object ends, and a cross that tells how it has turned.
 
 use souple_models::network::contour::{Frontier, Plane, Scan};
 use souple_table::{Range, Value};
@@ -9,13 +9,18 @@ use crate::reader::Reader;
 
 pub(super) static CONTOUR: Keys = Keys::new(
     "contour",
-    "where an object ends, in a plane: the line `through` the masses of its skin, the `frontier` of what it does to what comes, or the trace of a probe that runs along it (`scan`)",
+    "where an object ends, in a plane: the line `through` the masses of its skin, the `frontier` of what it does to what comes, or the trace of a probe that runs along it (`scan`); or a `cross` on it",
     &[
         Key::new("through", Shape::Integers, "masses of a closed line, by number in the network"),
         Key::new("skin", Shape::Text, "a group whose masses are a closed line in their order"),
         Key::new("frontier", Shape::Texts, "groups of balls of one radius"),
         Key::new("scan", Shape::Texts, "groups of balls of one radius"),
-        Key::number("radius", "m", Range::POSITIVE, "of the balls"),
+        Key::new(
+            "cross",
+            Shape::Integers,
+            "masses by number in the network: a cross is drawn on the first, before and behind it, which turns as they all do",
+        ),
+        Key::number("radius", "m", Range::POSITIVE, "of the balls; length of the arms of a cross"),
         Key::number(
             "probe",
             "m",
@@ -62,6 +67,8 @@ pub enum Way {
     Skin(String),
     Frontier(Vec<String>, Frontier),
     Scan(Vec<String>, Scan),
+    /// Masses by number that turn it, on the first of which it is, and the length of its arms [m].
+    Cross(Vec<u32>, f64),
 }
 
 impl ContourSpec {
@@ -77,21 +84,22 @@ impl ContourSpec {
             reader.log().add(Code::Conflict, &reader.site(), message, "another name, say `outline`");
             return None;
         }
-        let written = reader.written(&["through", "skin", "frontier", "scan"]);
+        let written = reader.written(&["through", "skin", "frontier", "scan", "cross"]);
         let [way] = written[..] else {
             let message = format!("a contour is told in one way, this one in {}", written.len());
             reader.log().add(
                 Code::WrongType,
                 &reader.site(),
                 message,
-                "one of through, skin, frontier, scan",
+                "one of through, skin, frontier, scan, cross",
             );
             return None;
         };
         let is_of_balls = matches!(way, "frontier" | "scan");
         let radius = reader.maybe_number("radius");
-        if is_of_balls != radius.is_some() {
-            refuse(way, "balls have a `radius`, skins have none", "radius = \"…\" with `frontier` or `scan`");
+        if (is_of_balls || way == "cross") != radius.is_some() {
+            let expected = "radius = \"…\" with `frontier`, `scan` or `cross`";
+            refuse(way, "balls and crosses have a `radius`, skins have none", expected);
             return None;
         }
         let radius = radius.unwrap_or(1.0);
@@ -122,6 +130,7 @@ impl ContourSpec {
                 let frontier = Frontier { radius, probe: number("probe", 0.1), cell: step };
                 Way::Frontier(reader.texts("frontier"), frontier)
             }
+            "cross" => Way::Cross(reader.maybe_indices("cross")?, radius),
             _ => Way::Scan(reader.texts("scan"), Scan { radius, band: number("band", 0.5), step }),
         };
         let normal = ["x", "y", "z"].iter().position(|axis| *axis == reader.choice("normal"));
@@ -131,7 +140,7 @@ impl ContourSpec {
     /// Groups of masses that it is of.
     pub(super) fn groups(&self) -> &[String] {
         match &self.way {
-            Way::Through(_) => &[],
+            Way::Through(_) | Way::Cross(..) => &[],
             Way::Skin(group) => std::slice::from_ref(group),
             Way::Frontier(groups, _) | Way::Scan(groups, _) => groups,
         }
