@@ -3,11 +3,8 @@
 use super::network::OSCILLATOR;
 use crate::{Case, Reading, Statistic, Tolerance};
 
-const EXCLUSION: &str =
-    r#"parameters.exclusion={ name = "ball", threshold = 0.98, stiffness = 40000, damping = 30 }"#;
-
-const NO_EXCLUSION: &str =
-    "parameters.exclusion={ name = \"ball\", threshold = 0.98, stiffness = 0, damping = 0 }";
+/// Links that give way and come back, in the place of plastic ones.
+const ELASTIC_LAW: &str = r#"parameters.law={ name = "spring", stiffness = 10000 }"#;
 
 const SQUARE: Case = Case {
     capabilities: &["JIM-57", "JIM-85"],
@@ -40,7 +37,20 @@ const LED: Case = Case {
 const PLASTIC: &str =
     r#"parameters.law={ name = "elasto_plastic", stiffness = 1000, hardening = 250, traction = 5 }"#;
 
-const ELASTIC_RIM: &str = r#"parameters.rim={ name = "spring", stiffness = 10000 }"#;
+const FULL_SQUARE: Case = Case { capabilities: &["JIM-57", "JIM-86"], scene: "full_square", ..SQUARE };
+
+/// A square that a ball of 100 kg falls on.
+const STRUCK: Case = Case { capabilities: &["JIM-57", "JIM-87"], scene: "ball_on_square", ..SQUARE };
+
+/// One whose masses keep each other off.
+const STRUCK_FULL: Case = Case { scene: "ball_on_full_square", ..STRUCK };
+
+/// One with an elastic rim.
+const STRUCK_RIM: Case = Case { scene: "ball_on_elastic_rim", ..STRUCK };
+
+const BAR: Case = Case { capabilities: &["JIM-57", "JIM-88"], scene: "plastic_bar", ..SQUARE };
+
+const FULL_BAR: Case = Case { scene: "full_bar", ..BAR };
 
 const WITHOUT_DRAG: [&str; 2] = ["networks.sample.masses.block.drag=0", "networks.sample.masses.head.drag=0"];
 
@@ -398,143 +408,115 @@ pub(super) const CASES: &[Case] = &[
         reference: 31.8,
         tolerance: Tolerance::Absolute(2.4),
         source: "EXP-26",
-        mutation: EXCLUSION,
+        mutation: r#"networks.square.links[0].law={ name = "spring", stiffness = 10000 }"#,
         ..SQUARE
     },
     Case {
         id: "plastic_square_keeps_area",
-        capabilities: &["JIM-57", "JIM-86"],
         what: "the same with masses that keep each other off",
-        settings: &[EXCLUSION],
         reference: 36.0,
         tolerance: Tolerance::Relative(0.03),
         source: "EXP-27: a loss of less than 3 %",
-        mutation: NO_EXCLUSION,
-        ..SQUARE
+        mutation: "parameters.exclusion.stiffness=0",
+        ..FULL_SQUARE
     },
     Case {
         id: "plastic_square_keeps_most",
-        capabilities: &["JIM-57", "JIM-86"],
         what: "the same loses less than a quarter of what the links alone lose, 0.117 of 36 m²",
-        settings: &[EXCLUSION],
         // 36 (1 - 0.117/4)
         reference: 34.947,
         tolerance: Tolerance::AtLeast,
         source: "EXP-27: a loss of less than a quarter of that of EXP-26, area 0.883 [V]",
         mutation: "parameters.exclusion.threshold=0.94",
-        ..SQUARE
+        ..FULL_SQUARE
     },
     Case {
         id: "ball_on_square_presses",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "area of a square of plastic links after a ball of 100 kg fell on it from ten metres, and was lifted off",
-        scene: "ball_on_square",
         // 0.332 of 36 m² [V]
         reference: 11.952,
-        // twice what it changes by between 480 and 2000 steps a second, 12.39 to 12.14 m²: once for either program
-        tolerance: Tolerance::Absolute(0.5),
+        // what it changes by between 400 and 2400 steps a second, 12.37 to 11.91 m²
+        tolerance: Tolerance::Absolute(0.46),
         source: "EXP-28: area 0.332 of that before [V], by a program of its own",
-        mutation: EXCLUSION,
-        ..SQUARE
+        mutation: ELASTIC_LAW,
+        ..STRUCK
     },
     Case {
         id: "ball_on_square_keeps_area",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "area of the same under a ball of 100 kg, with exclusion, after it was lifted off",
-        scene: "ball_on_square",
-        settings: &[EXCLUSION],
         reference: 36.0,
         tolerance: Tolerance::Relative(0.05),
         source: "EXP-29: kept within 2 to 5 %",
-        mutation: NO_EXCLUSION,
-        ..SQUARE
+        mutation: "parameters.exclusion.stiffness=0",
+        ..STRUCK_FULL
     },
     Case {
         id: "ball_on_square_bulges_right",
-        capabilities: &["JIM-57", "JIM-87"],
-        what: "how far to the right the same reaches then, which began at 6 m: farther by more than a quarter of the distance of its masses",
-        scene: "ball_on_square",
-        settings: &[EXCLUSION],
+        what: "how far to the right the same reaches then, which began at 6 m: farther by more than a tenth of the distance of its masses",
         reading: Reading::last("right"),
-        // thirty times as far as it ever does by its own weight, under a ball of ten grams
-        reference: 6.25,
+        // twenty-seven times as far as it ever does by its own weight, under a ball of ten grams
+        reference: 6.1,
         tolerance: Tolerance::Above,
         source: "EXP-29: matter bulges sideways",
         mutation: "networks.square.masses.ball.mass=0.01",
-        ..SQUARE
+        ..STRUCK_FULL
     },
     Case {
         id: "ball_on_square_bulges_left",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "and to the left, where it began at 0 m",
-        scene: "ball_on_square",
-        settings: &[EXCLUSION],
         reading: Reading::last("left"),
-        reference: -0.25,
+        reference: -0.1,
         tolerance: Tolerance::AtMost,
         source: "EXP-29: matter bulges sideways",
         mutation: "networks.square.masses.ball.mass=0.01",
-        ..SQUARE
+        ..STRUCK_FULL
     },
     Case {
         id: "ball_on_square_lengthens_rim",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "perimeter of the same, which bulges and is dented on the same area",
-        scene: "ball_on_square",
-        settings: &[EXCLUSION],
         reading: Reading::last("perimeter"),
         // 1.021 of 24 m [V]
         reference: 24.504,
-        // a quarter of the growth, by a program of its own
-        tolerance: Tolerance::Absolute(0.126),
-        source: "EXP-29: perimeter 1.021 of that before [V]",
+        // what it changes by between 400 and 2400 steps a second, 24.24 to 24.48 m: whole rows glide, or do not
+        tolerance: Tolerance::Absolute(0.245),
+        source: "EXP-29: perimeter 1.021 of that before [V], by a program of its own",
         mutation: "networks.square.masses.ball.mass=0.01",
-        ..SQUARE
+        ..STRUCK_FULL
     },
     Case {
         id: "ball_on_rim_keeps_perimeter",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "perimeter of a square of plastic links whose rim is of elastic ones, after the ball fell on it",
-        scene: "ball_on_square",
-        settings: &[ELASTIC_RIM],
         reading: Reading::last("perimeter"),
         reference: 24.0,
         tolerance: Tolerance::Relative(0.01),
         source: "EXP-30: perimeter within 1 %, area free",
         mutation: r#"parameters.rim={ name = "elasto_plastic", stiffness = 10000, hardening = 500, traction = 50 }"#,
-        ..SQUARE
+        ..STRUCK_RIM
     },
     Case {
         id: "ball_on_rim_frees_area",
-        capabilities: &["JIM-57", "JIM-87"],
         what: "area of the same: no more than a shape has whose rim is pressed in",
-        scene: "ball_on_square",
-        settings: &[ELASTIC_RIM],
         // 0.452 of 36 m² [V]
         reference: 16.272,
-        // twice what the other scene changes by with the step: between 480 and 2000 steps a second this one does by 0.17 m², and what is open of it, the damping of the rim, by 0.6
+        // between 400 and 2400 steps a second it changes by 1 m², 16.1 to 17.2 m²
         tolerance: Tolerance::Absolute(1.0),
         source: "EXP-30: perimeter 1.001, area 0.452 [V]: area free",
-        mutation: EXCLUSION,
-        ..SQUARE
+        mutation: ELASTIC_LAW,
+        ..STRUCK_RIM
     },
     Case {
         id: "plastic_bar_loses_area",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "area of a bar of plastic links that fell across a ball and lies bent over it",
-        scene: "plastic_bar",
         // 0.90 to 0.95 of 11 m²
         reference: 10.175,
         tolerance: Tolerance::Absolute(0.275),
         source: "EXP-31: 0.90 to 0.95 of its area",
-        mutation: EXCLUSION,
-        ..SQUARE
+        mutation: ELASTIC_LAW,
+        ..BAR
     },
     Case {
         id: "plastic_bar_stays_bent",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "height of the ends of the same without its weight, where its middle is on the ball at 2.875 m: half of the sag of the source at least stays below it",
-        scene: "plastic_bar",
         reading: Reading::last("ends"),
         // 2.875 - 2.5/2
         reference: 1.625,
@@ -542,60 +524,49 @@ pub(super) const CASES: &[Case] = &[
         source: "EXP-31: stays bent; sag 2.5 [V]",
         // a bar of soft springs, which lies on the ground too while it has its weight
         mutation: r#"parameters.law={ name = "spring_damper", stiffness = 300, damping = 20 }"#,
-        ..SQUARE
+        ..BAR
     },
     Case {
         id: "plastic_bar_bends",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "height of the ends of the same under its weight: on the ground",
-        scene: "plastic_bar",
         reading: Reading::last("ends").after(600),
         reference: 0.5,
-        // what a mass sinks in that bears the weight of twelve: 12 · 9.81/40000 m, and what still swings
+        // what a mass sinks in that bears the weight of twelve: 12 · 9.81/40000 m, what the ground falls by six metres beside its middle, 1.8 mm, and what still swings
         tolerance: Tolerance::Absolute(0.01),
         source: "EXP-31: bends over the obstacle",
         // a bar too stiff to bend
         mutation: r#"parameters.law={ name = "spring_damper", stiffness = 20000, damping = 20 }"#,
-        ..SQUARE
+        ..BAR
     },
     Case {
         id: "plastic_bar_keeps_area",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "area of a bar with exclusion that lies bent over a ball",
-        scene: "plastic_bar",
-        settings: &[EXCLUSION],
         reference: 11.0,
         tolerance: Tolerance::Relative(0.03),
         source: "EXP-32: kept within 3 %",
         mutation: "parameters.exclusion.threshold=1.05",
-        ..SQUARE
+        ..FULL_BAR
     },
     Case {
         id: "full_bar_bends",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "height of the ends of the same under its weight: on the ground, as those of the bar without exclusion",
-        scene: "plastic_bar",
-        settings: &[EXCLUSION],
         reading: Reading::last("ends").after(600),
         reference: 0.5,
         // as of plastic_bar_bends
         tolerance: Tolerance::Absolute(0.01),
         source: "EXP-32: the same bend",
         mutation: r#"parameters.law={ name = "spring_damper", stiffness = 20000, damping = 20 }"#,
-        ..SQUARE
+        ..FULL_BAR
     },
     Case {
         id: "full_bar_stays_bent",
-        capabilities: &["JIM-57", "JIM-88"],
         what: "and without its weight, as of plastic_bar_stays_bent",
-        scene: "plastic_bar",
-        settings: &[EXCLUSION],
         reading: Reading::last("ends"),
         reference: 1.625,
         tolerance: Tolerance::AtMost,
         source: "EXP-32: the same bend; sag 2.4 to 2.5 [V]",
         mutation: r#"parameters.law={ name = "spring_damper", stiffness = 300, damping = 20 }"#,
-        ..SQUARE
+        ..FULL_BAR
     },
     Case {
         id: "block_stays_stretched",
