@@ -24,6 +24,8 @@ pub struct Frame<'a> {
     pub poses: Vec<(Mat3, Vec3)>,
     pub bodies: Vec<FrameBody<'a>>,
     pub skins: Vec<FrameSkin>,
+    /// Ends of the straight pieces of all contours [m].
+    pub contours: Vec<[Vec3; 2]>,
 }
 
 /// A hand at work.
@@ -105,6 +107,8 @@ impl Frame<'_> {
         }
         self.bodies.into_iter().for_each(|body| body.encode(&mut bytes));
         self.skins.iter().for_each(|skin| skin.encode(&mut bytes));
+        put_u32(&mut bytes, self.contours.len());
+        self.contours.iter().flatten().for_each(|end| put_vector(&mut bytes, *end));
         bytes
     }
 }

@@ -20,7 +20,7 @@ use crate::hub::Outgoing;
 
 macro_rules! version {
     () => {
-        3
+        4
     };
 }
 

@@ -53,9 +53,21 @@ impl Stage {
                 .map(|skin| of_skin(world, skin))
                 .chain(session.bodies.iter().filter_map(|body| Some(of_dress(world, body.dress.as_ref()?))))
                 .collect(),
+            contours: session.bodies.iter().flat_map(|body| pieces_of_contours(world, body)).collect(),
         };
         frame.encode()
     }
+}
+
+/// Ends of the straight pieces of a body's contours, each closed line by line.
+fn pieces_of_contours(world: &World, body: &BodyInfo) -> Vec<[Vec3; 2]> {
+    let positions = &world.rows(body.system).positions;
+    let lines = body.contours.iter().flat_map(|contour| contour.places(positions));
+    let pieces = |line: Vec<Vec3>| {
+        let next = line.iter().cycle().skip(1);
+        line.iter().zip(next).map(|(from, to)| [*from, *to]).collect::<Vec<_>>()
+    };
+    lines.flat_map(pieces).collect()
 }
 
 /// Where the points of a body are that are shown.

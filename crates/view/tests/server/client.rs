@@ -176,6 +176,8 @@ pub struct Frame {
     /// Links that do not hold.
     pub torn: usize,
     pub skin_triangles: Vec<u32>,
+    /// How long the pieces of all contours are together [m].
+    pub contour_length: f32,
     /// Euler characteristic of each skin as it came.
     pub skin_euler: Vec<i64>,
 }
@@ -227,6 +229,13 @@ impl Frame {
             frame.skin_triangles.push(triangles);
             // each edge has two triangles
             frame.skin_euler.push(i64::from(points) - i64::from(triangles / 2));
+        }
+        let pieces = u32_at(at) as usize;
+        at += 4;
+        for _ in 0..pieces {
+            let number = |k: usize| f32::from_le_bytes(bytes[at + 4 * k..at + 4 * k + 4].try_into().unwrap());
+            frame.contour_length += (0..3).map(|k| (number(k + 3) - number(k)).powi(2)).sum::<f32>().sqrt();
+            at += 24;
         }
         assert_eq!(at, bytes.len(), "the frame has its length");
         Some(frame)

@@ -28,6 +28,23 @@ const TEARING: &str = r#"
     motion = { times = [0, 0.5], offsets = [[0, 0, 0], [0, 0.1, 0]] }
 "#;
 
+/// Four masses of a square of a decimetre, a line around them and a cross on the first.
+const OUTLINED: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [systems.main]
+    stepper = "t_simulation"
+    [networks.net.masses.corners]
+    positions = [[0, 0, 0], [0.1, 0, 0], [0.1, 0, 0.1], [0, 0, 0.1]]
+    mass = "10 g"
+    [networks.net.contours.around]
+    skin = "corners"
+    [networks.net.contours.mark]
+    cross = [0, 1, 2, 3]
+    radius = 0.05
+"#;
+
 /// A block that two frames carry, held at neither end.
 const CARRIED: &str = r#"
     format = 1
@@ -180,6 +197,15 @@ fn frames_are_shown() {
     let refused = page.document_where("refused", |refused| refused["about"] == "arrows");
     assert!(refused["message"].as_str().unwrap().contains("contact_force"), "{refused}");
     assert_eq!(page.frame_where(|frame| frame.field_count == 1 && frame.arrow_count == 1).frame_counts, [2]);
+}
+
+/// A line around a square has its four sides; a cross has two bars of two arms, there and back, before and behind.
+#[test]
+fn contours_are_shown() {
+    let world = World::of(OUTLINED);
+    let frame = Page::open(&world).frame();
+    let wanted = 4.0 * 0.1 + 2.0 * 2.0 * 2.0 * 2.0 * 0.05;
+    assert!((frame.contour_length - wanted).abs() < 1e-6, "{} m", frame.contour_length);
 }
 
 /// A skin comes with triangles in every frame; the body under it is said to be hidden.

@@ -1,6 +1,6 @@
 // What comes over the wire and how it is read: see docs/protocol.md.
 
-const VERSION = 3;
+const VERSION = 4;
 export const SUBPROTOCOL = `souple.v${VERSION}`;
 
 export type Vector = [number, number, number];
@@ -272,6 +272,8 @@ export interface Frame {
   poses: Float32Array[];
   bodies: BodyFrame[];
   skins: SkinFrame[];
+  /** Ends of the straight pieces of all contours. */
+  contours: Float32Array;
 }
 
 export interface Samples {
@@ -426,5 +428,6 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView, bodyCount: number, sce
     poses: read.list(poseCount, () => read.floats(12)),
     bodies: read.list(bodyCount, body),
     skins: read.list(skinCount, skin),
+    contours: read.floats(6 * read.integer()),
   };
 }

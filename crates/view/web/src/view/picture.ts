@@ -29,6 +29,7 @@ import { Obstacles } from "./obstacles";
 import { Meanings } from "./meanings";
 import { coloursOf, linearColours } from "./palette";
 import { Quality } from "./quality";
+import { Contours } from "./contours";
 import { Skin } from "./skin";
 import { Tools } from "./tools";
 
@@ -95,6 +96,7 @@ export class Picture {
   private reflections: Texture | null = null;
   private obstacles: Obstacles | null = null;
   private skins: Skin[] = [];
+  private readonly contours = new Contours();
   private arrows = new Arrows(1);
   private extras: Extras = { arrows: -1, unit: "", explode: 0, axes: true };
   private bounds = new Box3();
@@ -201,6 +203,7 @@ export class Picture {
     this.bodies = ofBodies.map((surface, index) => new Body(index, info.bodies[index]!, surface, networks[index], this.size));
     this.skins = info.skins.map((skin, index) => new Skin(skin, skin.worn_by ?? info.bodies.length + index));
     this.skins.forEach((skin) => this.scene.add(skin.mesh));
+    this.scene.add(this.contours.lines);
     this.arrows = new Arrows(this.size);
     this.scene.add(this.arrows.group);
     this.obstacles = new Obstacles(info.obstacles, surfaces.slice(info.bodies.length), this.eye.up, this.bounds);
@@ -257,6 +260,7 @@ export class Picture {
     this.last = frame;
     frame.bodies.forEach((body, index) => this.bodies[index]?.update(body));
     frame.skins.forEach((skin, index) => this.skins[index]?.update(skin));
+    this.contours.update(frame.contours);
     this.obstacles?.move(frame.poses);
     this.hands.update(frame.hands);
     this.tools.update(frame.hands);
