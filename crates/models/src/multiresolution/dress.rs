@@ -40,8 +40,29 @@ pub struct Dress {
     surface: TriangleSurface,
     /// By level, from coarse to fine, and by node.
     ties: Vec<Vec<Tie>>,
-    /// Time in which a jump fades [s].
-    blend: f64,
+    fading: Fading,
+}
+
+/// How what a node would jump by fades.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fading {
+    /// In this time [s].
+    pub blend: f64,
+    /// In more where a node would move by more than this from one period to the next [m].
+    pub most: f64,
+}
+
+impl Fading {
+    /// How long a jump fades, with periods of `timestep` [s].
+    fn time(&self, jump: Vec3, timestep: f64) -> f64 {
+        self.blend.max(jump.length() / self.most * timestep)
+    }
+
+    /// What is left of a jump at an age.
+    fn share(&self, jump: Vec3, age: f64, timestep: f64) -> f64 {
+        let time = self.time(jump, timestep);
+        if time > 0.0 { (1.0 - age / time).max(0.0) } else { 0.0 }
+    }
 }
 
 /// Numbers of a node: where it is, what is left of a jump and when that was, and how far its points had been moved.
@@ -85,14 +106,14 @@ impl Tie {
 }
 
 impl Dress {
-    /// Of a body and its meshes, from coarse to fine; `of` are the numbers of the body's system and of its force there, `blend` the
-    /// time in which jumps fade [s]. Nodes stand at rest.
+    /// Of a body and its meshes, from coarse to fine; `of` are the numbers of the body's system and of its force there. Nodes stand
+    /// at rest.
     pub fn new(
         name: String,
         of: [usize; 2],
         surface: TriangleSurface,
         (force, meshes): (&LevelsForce, &[&Mesh]),
-        blend: f64,
+        fading: Fading,
     ) -> Self {
         let first_row = force.first_row;
         let ties = meshes.iter().enumerate().map(|(level, mesh)| {
@@ -103,7 +124,7 @@ impl Dress {
                 .map(|carrier| Tie { corners: carrier.corners.map(row), weights: carrier.weights })
                 .collect()
         });
-        Self { name, of, first_row, ties: ties.collect(), surface, blend }
+        Self { name, of, first_row, ties: ties.collect(), surface, fading }
     }
 
     pub fn triangles(&self) -> &[[u32; 3]] {
@@ -120,7 +141,7 @@ impl Dress {
         let count = self.surface.points.len();
         let mut state = FieldState { values: vec![0.0; PER_NODE * count + 1], indices: vec![0; count] };
         for (shown, numbers) in self.surface.points.iter().zip(state.values.chunks_exact_mut(PER_NODE)) {
-            Node { shown: *shown, age: self.blend, ..Node::default() }.write(numbers);
+            Node { shown: *shown, ..Node::default() }.write(numbers);
         }
         state
     }
@@ -139,10 +160,6 @@ impl Dress {
     /// The most that a node has jumped from one period to the next because others came to be at work [m].
     pub fn greatest_jump(&self, state: &FieldState) -> f64 {
         state.values.last().copied().unwrap_or(0.0)
-    }
-
-    fn share(&self, age: f64) -> f64 {
-        if self.blend > 0.0 { (1.0 - age / self.blend).max(0.0) } else { 0.0 }
     }
 }
 
@@ -183,17 +200,17 @@ impl Field for Worn {
             let mut node = Node::read(numbers);
             let moved = tie.of(moved, dress.first_row);
             if moved != node.moved {
-                node.jump = node.jump * dress.share(node.age) - (moved - node.moved);
+                node.jump =
+                    node.jump * dress.fading.share(node.jump, node.age, step.timestep) - (moved - node.moved);
                 (node.age, node.moved) = (0.0, moved);
             }
-            let share = dress.share(node.age);
-            node.age = (node.age + step.timestep).min(dress.blend);
-            let left = dress.share(node.age);
-            // without a blend there is no share that could be left
-            let fades = if dress.blend > 0.0 { share - left } else { 1.0 };
-            greatest = greatest.max(node.jump.length() * fades);
+            let share_at = |age: f64| dress.fading.share(node.jump, age, step.timestep);
+            let before = if node.age == 0.0 { 1.0 } else { share_at(node.age) };
+            node.age += step.timestep;
+            let left = share_at(node.age);
+            greatest = greatest.max(node.jump.length() * (before - left));
             if left == 0.0 {
-                node.jump = Vec3::ZERO;
+                (node.jump, node.age) = (Vec3::ZERO, 0.0);
             }
             node.shown = tie.of(&now.positions, 0) + node.jump * left;
             node.write(numbers);
@@ -263,7 +280,13 @@ mod tests {
         for (index, point) in surface.points.iter_mut().enumerate().filter(|(index, _)| index % 2 == 0) {
             *point += (*point - Vec3::new(0.05, 0.05, 0.05)) * (0.03 + 1e-4 * index as f64);
         }
-        let dress = Dress::new("dress".to_owned(), [0, 0], surface, (&force, &[coarse, fine]), 0.1);
+        let dress = Dress::new(
+            "dress".to_owned(),
+            [0, 0],
+            surface,
+            (&force, &[coarse, fine]),
+            Fading { blend: 0.1, most: 1e-3 },
+        );
         let greatest = |map: Mat3, away: Vec3| {
             let to = |x: &Vec3| map * *x + away;
             let positions: Vec<Vec3> = force.hierarchy().rest.iter().map(to).collect();

@@ -50,7 +50,7 @@ use matter::Matter;
 use souple_engine::levels::Followers;
 
 pub use criterion::{Criterion, Measure};
-pub use dress::{Dress, Worn};
+pub use dress::{Dress, Fading, Worn};
 pub use links::{Hierarchy, LevelsError, Loops, MOST};
 pub use roles::Role;
 

@@ -8,7 +8,7 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
-use souple_models::multiresolution::{Coupling, Cut, Dress, LevelsDescription, LevelsForce, Worn};
+use souple_models::multiresolution::{Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
 use souple_table::Value;
 
@@ -262,7 +262,8 @@ fn dress(draft: &Draft, body: &Placed) -> Option<Dress> {
     let of = forces.iter().position(|candidate| candidate.name() == name)?;
     let force = forces[of].as_any().downcast_ref::<LevelsForce>()?;
     let name = format!("{}.dress", body.spec.name);
-    Some(Dress::new(name, [body.system, of], surface, (force, &meshes), spec.blend))
+    let fading = Fading { blend: spec.blend, most: spec.most.unwrap_or(f64::INFINITY) };
+    Some(Dress::new(name, [body.system, of], surface, (force, &meshes), fading))
 }
 
 /// Rest positions and start velocities of the coarser points: `v + ω × (x - c)` as those of the body.

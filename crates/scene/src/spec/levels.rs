@@ -25,6 +25,12 @@ static DRESS: Keys = Keys::new(
         Key::new("mesh", Shape::Entry(MESH), "whose boundary it is; the body's own where left out"),
         Key::number("blend", "s", Range::NOT_NEGATIVE, "in which what would jump as levels change fades")
             .or(Value::Number(0.12)),
+        Key::number(
+            "most",
+            "m",
+            Range::POSITIVE,
+            "that a node moves by from one period to the next as levels change; what is left fades longer",
+        ),
     ],
 );
 
@@ -137,6 +143,8 @@ pub struct DressSpec {
     pub mesh: Option<MeshSpec>,
     /// [s]
     pub blend: f64,
+    /// [m]
+    pub most: Option<f64>,
 }
 
 impl LevelsSpec {
@@ -205,6 +213,7 @@ impl LevelsSpec {
             dress: reader.table("dress").map(|dress| DressSpec {
                 mesh: dress.has("mesh").then(|| MeshSpec::read(&dress)).flatten(),
                 blend: dress.number("blend"),
+                most: dress.maybe_number("most"),
             }),
             cuts: reader
                 .tables("cuts")
