@@ -352,7 +352,7 @@ fn emitted_code_is_compiled_soon() {
     let code = |law: &str, kind: ElementKind| {
         let law = WRITTEN_LAWS.iter().find(|known| known.name == law).unwrap();
         let compiled = EnergyLaw::compile(&law.text().unwrap()).unwrap();
-        let element = element_data(kind, &kind.rules()[0], MapKind::General).unwrap();
+        let element = element_data(kind, kind.default_rule(), MapKind::General).unwrap();
         element.derive(&compiled, Cut::NONE).unwrap().emit(ElementCode::Rust).text
     };
     let small = code("linear", ElementKind::Tri3);

@@ -634,7 +634,16 @@ fn pairs_remember_as_links_do() {
     let laws: Vec<_> = LINKS.entries.iter().filter(few).collect();
     assert!(laws.len() >= 5, "{} laws remember", laws.len());
     for entry in laws {
-        let link = links(law(entry), &[[0, 1]], RANGE, Account::None);
+        let link = Links::new(LinkDescription {
+            name: "link".into(),
+            law: law(entry).into(),
+            ends: &[[0, 1]],
+            span: Span::Distance,
+            rest_lengths: &[RANGE],
+            lengths: &[1.0],
+            timestep: TE,
+            account: Account::None,
+        });
         let alone = swing(Box::new(link), 2.0);
         for listing in [Listing::State, Listing::Own] {
             let crowd = Crowd::new(CrowdDescription {
@@ -699,7 +708,7 @@ fn driven_laws_are_laws_made_so() {
                     continue;
                 };
                 assert_eq!(driven.fault(&[0.0, to]), None, "{} {name}", entry.name);
-                let mut numbers = [[0.0; 16]; 2];
+                let mut numbers = [(); 2].map(|()| vec![0.0; made.memory_len()]);
                 for (length, before) in [(1.02, 1.0), (0.93, 0.95), (1.3, 1.29), (0.6, 0.7)] {
                     let (reach, moment) = (Reach { length, before, rest: 1.0 }, Moment::of(0.0));
                     let [own, other] = &mut numbers;
@@ -744,4 +753,51 @@ fn wrong_numbers_are_faults() {
     let wiring = Wiring { gain: None, parameters: vec![("damping".to_owned(), 0)] };
     let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance };
     assert!(!DrivenLaw::new(undamped, recipe, &wiring).is_conservative());
+}
+
+/// What a law with memory stores in a pair is given off where the pair leaves the range, once, wherever pairs stand; and what a state
+/// stored where a link switches to one that stores less.
+#[test]
+fn what_was_stored_is_given_off() {
+    let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let entry = LINKS.find("finite_state").unwrap();
+    let automaton = |states: &[(&str, &str)], transitions: &[(&str, &str)]| {
+        let values = Values::new()
+            .with("states", Value::Texts(&text(states)))
+            .with("transitions", Value::Texts(&text(transitions)))
+            .with("energies", Value::Texts(&text(&[("held", "20 * (D - 1)^2 / 2")])));
+        let values = entry.values(values).unwrap();
+        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap()
+    };
+    let held = ("held", "-20 * (D - 1)");
+    // parts at 5 m/s, and is at 1.2 m after 40 ms
+    let stored = |apart: f64| 10.0 * (apart - 1.0) * (apart - 1.0);
+    for listing in [Listing::State, Listing::Own] {
+        let crowd = Crowd::new(CrowdDescription {
+            name: "crowd".into(),
+            law: automaton(&[held], &[]).into(),
+            first: 0..2,
+            second: 0..2,
+            range: 1.2,
+            friction: None,
+            fusible: None,
+            timestep: TE,
+            listing,
+        });
+        let steps = swing(Box::new(crowd), 5.0);
+        let gone = steps.iter().position(|[apart, _]| *apart >= 1.2).unwrap();
+        let expected = stored(steps[gone - 1][0]);
+        assert_eq!(steps[gone][1], 0.0, "{listing:?}: it is looked at one step later");
+        for [apart, heat] in &steps[gone + 1..] {
+            assert!((heat - expected).abs() < 1e-12, "{listing:?}: {heat} J for {expected} J at {apart} m");
+        }
+    }
+    let torn = automaton(&[held, ("torn", "0")], &[("held -> torn", "D > 1.2")]);
+    let steps = swing(Box::new(links(torn, &[[0, 1]], 1.0, Account::None)), 5.0);
+    let gone = steps.iter().position(|[apart, _]| *apart > 1.2).unwrap();
+    let expected = stored(steps[gone][0]);
+    let last = steps[steps.len() - 1][1];
+    assert!((last - expected).abs() < 1e-12, "{last} J for {expected} J");
 }

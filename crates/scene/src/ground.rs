@@ -10,7 +10,8 @@ pub fn grounds(mesh: &Mesh, radii: &[f64]) -> Vec<bool> {
         return Vec::new();
     }
     let mut is_ground = vec![false; radii.len()];
-    let mut order: Vec<usize> = (0..radii.len()).collect();
+    // masses without a size span nothing
+    let mut order: Vec<usize> = (0..radii.len()).filter(|point| radii[*point] > 0.0).collect();
     order.sort_by(|a, b| radii[*a].total_cmp(&radii[*b]));
     let mut span = BoundingBox::EMPTY;
     let first = order.iter().position(|point| {
@@ -23,8 +24,8 @@ pub fn grounds(mesh: &Mesh, radii: &[f64]) -> Vec<bool> {
     is_ground
 }
 
-/// In diagonals of what all smaller balls span.
-const MUCH_LARGER: f64 = 4.0;
+/// In diagonals of what all smaller balls span: a radius of ten kilometres under an object of some metres is some thousand.
+const MUCH_LARGER: f64 = 100.0;
 
 #[cfg(test)]
 mod tests {
@@ -44,5 +45,8 @@ mod tests {
         assert_eq!(grounds_of(&places, &[0.5, 5e3, 0.5, 5e3]), [false, true, false, true]);
         assert_eq!(grounds_of(&places, &[0.0; 4]), [false; 4]);
         assert_eq!(grounds_of(&[[0.0; 3], [0.0, 0.0, 1.1]], &[1.0, 0.1]), [false; 2]);
+        // a nail without a size beside balls, and a marble beside a large one
+        assert_eq!(grounds_of(&places[..3], &[0.0, 0.5, 0.5]), [false; 3]);
+        assert_eq!(grounds_of(&places[..2], &[0.01, 0.5]), [false; 2]);
     }
 }

@@ -409,7 +409,6 @@ fn both_spaces_give_one_motion() {
             continue;
         }
         let links = |is_physical: bool| {
-            let mut lists = 0;
             let said = entry.parameters.iter().enumerate().filter_map(|(index, parameter)| {
                 let (name, unit) = (parameter.name, parameter.unit);
                 match parameter.kind {
@@ -420,8 +419,8 @@ fn both_spaces_give_one_motion() {
                     }
                     Kind::Numbers => {
                         // a piece more than thresholds
-                        lists += 1;
-                        Some(format!("{name} = [{}]", list(&[1.0, 2.0, 0.0][..lists + 1], unit, is_physical)))
+                        let count = if name == "slopes" { 3 } else { 2 };
+                        Some(format!("{name} = [{}]", list(&[1.0, 2.0, 0.0][..count], unit, is_physical)))
                     }
                     // of another kind no number has a time or a mass in its unit
                     _ => {

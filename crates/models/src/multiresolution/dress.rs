@@ -190,8 +190,9 @@ impl Field for Worn {
         let [system, force] = dress.of;
         let now = rows.of(system);
         let active = rows.active(system, force).unwrap_or(&[]);
-        let moved = rows.moved(system, force).unwrap_or(&[]);
-        let Some(finest) = dress.ties.last() else { return Ok(()) };
+        let (Some(moved), Some(finest)) = (rows.moved(system, force), dress.ties.last()) else {
+            return Ok(());
+        };
         let mut greatest = dress.greatest_jump(field);
         for (index, tie) in finest.iter().enumerate() {
             let at_work = dress.ties.iter().rposition(|ties| ties[index].is_at_work(active));

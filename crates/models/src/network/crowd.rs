@@ -407,8 +407,7 @@ impl Force for Crowd {
             return;
         }
         let Work { grid, found: chunks, .. } = Work::of(scratch);
-        let CrowdDescription { first, second, range, law, .. } = &self.0;
-        let law_len = law.written().memory_len();
+        let CrowdDescription { first, second, range, .. } = &self.0;
         grid.sort(second.clone(), at.positions, *range);
         let is_one = first == second;
         chunks.resize_with(first.len().div_ceil(SEARCHED_TOGETHER), Vec::new);
@@ -434,20 +433,14 @@ impl Force for Crowd {
         }
         found.reserve(chunks.iter().map(Vec::len).sum());
         let mut memory = [0.0; 8];
-        // bonds that tear in this step, for what they give off; they have melted in the next
-        if self.0.fusible.is_some() {
-            let bond_at = HOOK + law_len;
-            let is_far = |pair: &&Pair| {
-                (at.positions[pair.a as usize] - at.positions[pair.b as usize]).length_sq() >= range * range
-            };
-            found.extend(at.pairs.iter().filter(|pair| pair.memory[bond_at] != MOLTEN).filter(is_far));
-        }
-        law.acting(at.driven, &mut |law| {
+        self.acting(at, |acting| {
+            // those that tear in this step, for what they give off; they have nothing left in the next
+            if self.remembered_len() > 0 {
+                found.extend(at.pairs.iter().filter(|pair| acting.tears(pair, at)));
+            }
             for [a, b] in chunks.iter().flatten() {
-                if law_len > 0 {
-                    let length = (at.positions[*b as usize] - at.positions[*a as usize]).length();
-                    law.begin(*range, length, &mut memory[HOOK..HOOK + law_len]);
-                }
+                let length = (at.positions[*b as usize] - at.positions[*a as usize]).length();
+                acting.begin(length, &mut memory);
                 found.push(Pair::new(*a as usize, *b as usize, memory));
             }
         });

@@ -97,7 +97,24 @@ impl Acting<'_> {
         &memory[HOOK..HOOK + self.law.memory_len()]
     }
 
-    /// `None` out of range, but for a bond that tears there.
+    /// What a pair of this length remembers of its law at the start.
+    pub fn begin(&self, length: f64, memory: &mut [f64; 8]) {
+        let len = self.law.memory_len();
+        if len > 0 {
+            self.law.begin(self.of.range, length, &mut memory[HOOK..HOOK + len]);
+        }
+    }
+
+    /// Whether a pair in State that is out of range has something to give off there: a bond, or what its law remembers from the
+    /// step before.
+    pub fn tears(&self, pair: &Pair, at: &Configuration) -> bool {
+        let (law_len, range_sq) = (self.law.memory_len(), self.of.range * self.of.range);
+        let Standing { d, before, .. } = self.crowd.standing([pair.a as u32, pair.b as u32], at);
+        let is_bound = self.of.fusible.is_some() && pair.memory[HOOK + law_len] != MOLTEN;
+        d.length_sq() >= range_sq && (is_bound || (law_len > 0 && before.length_sq() < range_sq))
+    }
+
+    /// `None` out of range, but for what tears there.
     pub fn act(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
         let Standing { d, before, reach, .. } = *standing;
         if reach.length >= self.of.range {
@@ -130,26 +147,36 @@ impl Acting<'_> {
             push += bond.push;
             energy.stored += self.gain * bond.stored;
             energy.dissipated += self.gain * bond.heat;
-            next[HOOK + self.law.memory_len()] = bond.rest;
+            // what is parted remembers what it was
+            if self.gain > 0.0 {
+                next[HOOK + own.len()] = bond.rest;
+            }
         }
         Some(Act { axial: u * (self.gain * push), across, energy, memory: next })
     }
 
-    /// What a bond gives off that is out of range and was in it a step before: all that it stored.
+    /// What a law that remembers, and a bond, give off where a pair is out of range and was in it a step before: all that they stored.
     pub fn tear(&self, standing: &Standing, memory: &[f64; 8], at: &Configuration) -> Option<Act> {
-        let bond_at = HOOK + self.law.memory_len();
-        let fusible = self.of.fusible.as_ref()?;
-        if memory[bond_at] == MOLTEN {
+        let (own, bond_at) = (self.law_memory(memory), HOOK + self.law.memory_len());
+        let fusible = self.of.fusible.as_ref().filter(|_| memory[bond_at] != MOLTEN);
+        if own.is_empty() && fusible.is_none() {
             return None;
         }
         // velocities of some steppers are not those that led here
         let length = standing.reach.before.min(self.of.range);
         let still = Reach { length, before: length, ..standing.reach };
         let before = Standing { reach: still, ..*standing };
-        let heat = self.gain * self.bond(fusible, &before, memory, at).stored;
-        let mut next = *memory;
+        let (mut heat, mut next) = (0.0, *memory);
         next[..HOOK].copy_from_slice(&Hook::FREE.numbers());
-        next[bond_at] = MOLTEN;
+        if !own.is_empty() {
+            heat += self.law.respond(&still, &Moment::of(at.time), own).stored;
+            self.begin(self.of.range, &mut next);
+        }
+        if let Some(fusible) = fusible {
+            heat += self.bond(fusible, &before, memory, at).stored;
+            next[bond_at] = MOLTEN;
+        }
+        let heat = self.gain * heat;
         let energy = Energy { stored: 0.0, dissipated: heat };
         Some(Act { axial: Vec3::ZERO, across: Vec3::ZERO, energy, memory: next })
     }
@@ -161,13 +188,9 @@ impl Acting<'_> {
 
     /// What a pair remembers, from the numbers that State has of it.
     pub fn recalled(&self, known: Option<&[f64]>, length: f64) -> [f64; 8] {
-        let (mut memory, law, own) = ([0.0; 8], self.law.memory_len(), self.crowd.remembered_len());
+        let (mut memory, own) = ([0.0; 8], self.crowd.remembered_len());
         match known {
-            None => {
-                if law > 0 {
-                    self.law.begin(self.of.range, length, &mut memory[HOOK..HOOK + law]);
-                }
-            }
+            None => self.begin(length, &mut memory),
             Some(numbers) if self.of.friction.is_none() => memory[HOOK..HOOK + own].copy_from_slice(numbers),
             Some(numbers) if own > 0 => memory[..HOOK + own].copy_from_slice(numbers),
             Some(&[x, y, z]) => {
@@ -188,6 +211,9 @@ impl Acting<'_> {
         task: &mut Task,
     ) -> Vec3 {
         let standing = self.crowd.between(pair, ways);
+        if standing.reach.length >= self.of.range && known.is_none() {
+            return Vec3::ZERO;
+        }
         let memory = self.recalled(known, standing.reach.length);
         let Some(act) = self.act(&standing, &memory, at) else { return Vec3::ZERO };
         task.heat += act.energy.dissipated;

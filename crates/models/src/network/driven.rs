@@ -10,6 +10,7 @@ use souple_table::{Kind, Parameter, Value, Values};
 use super::kernel::LinkKernel;
 use super::law::{LinkEntry, Making};
 use super::span::Span;
+use super::written::constants;
 
 /// What controls drive: places among the driven parameters of State.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -69,6 +70,23 @@ impl Recipe {
         self.entry.parameters.iter().flat_map(of).collect()
     }
 
+    /// A number as it is written.
+    pub fn written(&self, name: &str) -> Option<f64> {
+        let (_, register) = self.registers().into_iter().find(|(known, _)| known == name)?;
+        match &register {
+            Register::Number(parameter) => match self.values.get(parameter.name)? {
+                Value::Number(number) => Some(number),
+                Value::Integer(number) => Some(number as f64),
+                _ => None,
+            },
+            Register::OfList(parameter, index) => self.values.numbers(parameter.name).get(*index).copied(),
+            Register::Named(name) => {
+                let (names, numbers) = constants(self.values.texts(NAMED), 0, &[]).ok()?;
+                names.iter().zip(numbers).find_map(|(known, number)| (known == name).then_some(number))
+            }
+        }
+    }
+
     /// The law with other numbers in registers.
     ///
     /// # Errors
@@ -77,7 +95,7 @@ impl Recipe {
         let mut values = self.values.clone();
         for (register, number) in numbers {
             match register {
-                Register::Number(Parameter { name, kind: Kind::Integer, .. }) => {
+                Register::Number(Parameter { name, kind: Kind::Integer, .. }) if number.is_finite() => {
                     values.set(*name, Value::Integer(number.round() as i64));
                 }
                 Register::Number(parameter) => values.set(parameter.name, Value::Number(*number)),
@@ -163,7 +181,13 @@ impl DrivenLaw {
             })
             .collect();
         // energy that the law of the scene keeps another number may not: a damper that is driven from nothing
-        let others: Vec<_> = registers.iter().map(|(register, _)| (register.clone(), 1.0)).collect();
+        let at_work = |name: &String| recipe.written(name).filter(|number| *number != 0.0).unwrap_or(1.0);
+        let names = wiring.parameters.iter().map(|(name, _)| name);
+        let others: Vec<_> = registers
+            .iter()
+            .zip(names)
+            .map(|((register, _), name)| (register.clone(), at_work(name)))
+            .collect();
         let is_conservative =
             law.is_conservative() && recipe.make(&others).is_ok_and(|law| law.is_conservative());
         let last = Mutex::new(Made { numbers: Vec::new(), law: Arc::new(Err(String::new())) });
@@ -219,8 +243,8 @@ impl DrivenLaw {
     ) -> Arc<Result<Box<dyn LinkKernel>, String>> {
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         let now = registers.iter().map(|(_, slot)| driven[*slot]);
-        // what is no number is another one each time, and refused each time
-        if last.numbers.len() != registers.len() || last.numbers.iter().zip(now).any(|(a, b)| *a != b) {
+        let is_other = |(a, b): (&f64, f64)| a.to_bits() != b.to_bits();
+        if last.numbers.len() != registers.len() || last.numbers.iter().zip(now).any(is_other) {
             let numbers: Vec<_> =
                 registers.iter().map(|(register, slot)| (register.clone(), driven[*slot])).collect();
             let law = recipe.make(&numbers).and_then(|law| self.fits(law));

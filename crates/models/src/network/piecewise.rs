@@ -107,18 +107,24 @@ impl Piecewise {
         let (steepest, last) = (greatest(slopes), thresholds.last().copied());
         let law = Self { form, last: last.unwrap_or(0.0), zero, damping, steepest, range: f64::INFINITY };
         let Some(last) = last else { return law };
-        // of sums that cancel rounding remains
-        let rounding = 8.0 * f64::EPSILON * (steepest * (1.0 + last.abs()) + greatest(jumps));
-        let (slope, push) = match &law.form {
-            Form::AbsoluteValues { linear, bends, .. } => {
-                (linear + bends.iter().map(|(_, share)| share).sum::<f64>(), law.elastic(last))
+        // of sums that cancel rounding remains: of the sizes of what is added up
+        let (slope, push, sizes) = match &law.form {
+            Form::AbsoluteValues { linear, constant, bends } => {
+                let slope = linear + bends.iter().map(|(_, share)| share).sum::<f64>();
+                let steep = linear.abs() + bends.iter().map(|(_, share)| share.abs()).sum::<f64>();
+                let far = |(bend, share): &(f64, f64)| share.abs() * (last.abs() + bend.abs());
+                let high = linear.abs() * last.abs() + constant.abs() + bends.iter().map(far).sum::<f64>();
+                (slope, law.elastic(last), [steep, high])
             }
             Form::Tests(pieces) => {
                 let piece = pieces[pieces.len() - 1];
-                (piece.slope, piece.push(last))
+                let high = pieces.iter().map(|piece| piece.constant.abs()).sum::<f64>();
+                (piece.slope, piece.push(last), [steepest, high + greatest(jumps)])
             }
         };
-        let ends = slope.abs() <= 8.0 * f64::EPSILON * steepest && push.abs() <= rounding;
+        let [is_level, is_free] = [(slope, sizes[0]), (push, sizes[1])]
+            .map(|(number, size)| number.abs() <= 8.0 * f64::EPSILON * size);
+        let ends = is_level && is_free;
         Self { range: if ends { last } else { f64::INFINITY }, ..law }
     }
 

@@ -8,8 +8,14 @@ use super::span::Span;
 /// Numbers that a link of this law remembers: the dimension of its state. `None` where what a scene writes decides, as of
 /// automata, formulas and rheological networks.
 pub fn state_dimension(entry: &LinkEntry) -> Option<usize> {
+    // pieces are one more than thresholds; points have as many lengths as forces
+    [1, 2].into_iter().find_map(|first| dimension_with(entry, first))
+}
+
+/// With so many numbers in the first list, and two in others.
+fn dimension_with(entry: &LinkEntry, first: usize) -> Option<usize> {
     let mut values = Values::new();
-    let mut lists = 0;
+    let mut count = first;
     for (index, parameter) in entry.parameters.iter().enumerate() {
         match parameter.kind {
             // whatever is written as text decides
@@ -18,9 +24,8 @@ pub fn state_dimension(entry: &LinkEntry) -> Option<usize> {
             // thresholds ascend as they are told
             Kind::Number => values.set(parameter.name, Value::Number(1.0 + index as f64)),
             Kind::Numbers => {
-                // a piece more than thresholds
-                lists += 1;
-                values.set(parameter.name, Value::Numbers(&[1.0, 0.0][..lists.min(2)]));
+                values.set(parameter.name, Value::Numbers(&[1.0, 2.0][..count]));
+                count = 2;
             }
             _ => return None,
         }

@@ -137,9 +137,13 @@ impl ControlSpec {
         let of = match reader.written(&["links", "crowds"])[..] {
             ["crowds"] => Driven::Crowds(reader.text("crowds")),
             ["links"] => Driven::Links(reader.text("links")),
-            _ => {
+            [] => {
                 let message = format!("control `{name}` does not say what it drives");
                 reader.log().add(Code::MissingKey, &reader.site(), message, "links, or crowds: a name");
+                Driven::Links(String::new())
+            }
+            _ => {
+                refuse("crowds", format!("control `{name}` drives links and crowds"), "one of them");
                 Driven::Links(String::new())
             }
         };

@@ -49,7 +49,7 @@ macro_rules! lengths {
 const FOUR_PIECES: &str = r#"networks.sample.links[0].law={ name = "piecewise_linear", thresholds = [0.9, 1.2, 1.6], slopes = [-10, -2, 1, 0], zero = 0 }"#;
 const THREE_PIECES: &str = r#"networks.sample.links[0].law={ name = "cohesion", distance = 1, peak = 1.1, range = 1.5, cohesion = 1000 }"#;
 
-/// The values of the specification's example but that at 1.4 m; a push is a pull below zero.
+/// The values of the specification's example but that at 1.4 m, which `piecewise_value` has; a push is a pull below zero.
 pub(super) const MULTI_LINEAR: &[Case] = lengths!(
     FOUR_PIECES, &["JIM-17", "JIM-16"], "a characteristic of four pieces", "specification §2.8.3: values of the example",
     "networks.sample.links[0].law.zero=0.001", Tolerance::Absolute(1e-12);

@@ -363,7 +363,7 @@ pub(super) const CASES: &[Case] = &[
         ..FLUID
     },
     Case {
-        id: "fluid_stays_in_box_below",
+        id: "fluid_stays_in_box_above",
         what: "how high any of them was: no higher than the upper edge of the box that they filled at the start",
         reading: Reading::last("top").taking(Statistic::Max),
         reference: 2.6,

@@ -380,7 +380,7 @@ pub(super) const CASES: &[Case] = &[
         settings: &["bodies.cube.octree.operators=\"legacy\""],
         reference: 1.05 * 5.664,
         tolerance: Tolerance::Above,
-        source: "specification, V-09: mixed levels behave worse, by another frequency; far less stable, as it has them too, they are not: the energy is within 8 % for 30 s; 5.664 Hz of the coarse level alone",
+        source: "specification, V-09: mixed levels behave worse, by another frequency; the specification also calls them far less stable, which they are not here: their energy stays within 8 % for 30 s; 5.664 Hz of the coarse level alone",
         mutation: "bodies.cube.octree={ levels = 2, fixed = \"0\" }",
         ..MIXED
     },

@@ -63,12 +63,14 @@ fn exponential_pieces(
     let (mut knots, mut slopes, mut from) = (vec![0.0], Vec::new(), 0.0);
     while from < deepest {
         let mut to = deepest;
-        if off(from, to) > error {
+        // written so that what overflows is too far off
+        let is_off = |to: f64| !(off(from, to) <= error);
+        if is_off(to) {
             // the longest chord that is near enough: its distance grows with its length
             let (mut near, mut far) = (from, to);
             while far - near > 1e-12 * deepest {
                 let middle = 0.5 * (near + far);
-                if off(from, middle) > error { far = middle } else { near = middle }
+                if is_off(middle) { far = middle } else { near = middle }
             }
             to = near;
         }

@@ -71,6 +71,12 @@ impl FiniteState {
         Arguments::new(0.0, own.into_iter().chain(rest))
     }
 
+    /// What a link stores that remembers this [J].
+    fn stored(&self, reach: &Reach, time: f64, memory: &[f64]) -> f64 {
+        let energy = &self.states[memory[STATE] as usize].energy;
+        energy.as_ref().map_or(0.0, |energy| energy.evaluate(self.arguments(reach, time, memory).as_slice()))
+    }
+
     /// Makes the transition of a step.
     fn switch(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> &State {
         let state = &self.states[memory[STATE] as usize];
@@ -122,16 +128,26 @@ impl WrittenLaw for FiniteState {
     }
 
     fn respond(&self, reach: &Reach, moment: &Moment, memory: &mut [f64]) -> Response {
+        let mut before = [0.0; WRITTEN_MEMORY];
+        before[..memory.len()].copy_from_slice(memory);
+        let before = &before[..memory.len()];
         let state = self.switch(reach, moment.time, memory);
         let arguments = self.arguments(reach, moment.time, memory);
         let of = |formula: &Formula| formula.evaluate(arguments.as_slice());
+        let stored = state.energy.as_ref().map_or(0.0, of);
+        // what a switch leaves less in store is given off
+        let lost = if memory[STATE] != before[STATE] {
+            self.stored(reach, moment.time, before) - stored
+        } else {
+            0.0
+        };
         for (number, formula) in &state.updates {
             memory[1 + number] = of(formula);
         }
         Response {
             push: of(&state.push),
-            stored: state.energy.as_ref().map_or(0.0, of),
-            heat: state.loss.as_ref().map_or(0.0, |loss| of(loss) * self.timestep),
+            stored,
+            heat: lost + state.loss.as_ref().map_or(0.0, |loss| of(loss) * self.timestep),
         }
     }
 
@@ -189,8 +205,11 @@ pub const ENTRY: LinkEntry = LinkEntry {
             "what a state sets in every step, from what was before: \"x = x + Te * V / 2\"",
         )
         .or(Value::Texts(&[])),
-        Parameter::texts("energies", "stored in a state [J], for the account; nothing where left out")
-            .or(Value::Texts(&[])),
+        Parameter::texts(
+            "energies",
+            "stored in a state [J], for the account; what a transition leaves less of it is given off",
+        )
+        .or(Value::Texts(&[])),
         Parameter::texts("losses", "given off in a state [W], for the account; nothing where left out")
             .or(Value::Texts(&[])),
         Parameter::texts(

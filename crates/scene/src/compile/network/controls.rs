@@ -151,20 +151,18 @@ fn control(
         Drives::Connection { holds, ramp } => (Rule::Connection { holds: holds.clone(), ramp: *ramp }, 1.0),
         Drives::Parameter { name, value } => {
             let law = laws[0].1.as_ref()?;
-            let start = match law.values.get(name) {
-                Some(souple_table::Value::Number(number)) => number,
-                // a parameter of a written law: from the first value on
-                _ => f64::NAN,
-            };
-            (Rule::Parameter(value.clone()), start)
+            let (entry, values) = (law.entry, law.values.clone());
+            let recipe = Recipe { entry, values, timestep: 1.0, span: Span::Distance };
+            // what is no number of the law is said where it is wired
+            (Rule::Parameter(value.clone()), recipe.written(name).unwrap_or(0.0))
         }
     };
     let name = format!("{}.{}", body.spec.name, spec.name);
     let forces = laws.into_iter().map(|(force, _)| force).collect();
     let control = Written { name, system: body.system, forces, driven, rule, inputs };
-    let start = if start.is_finite() { start } else { control.first(&body.mesh.points, body.rows.start) };
-    if !start.is_finite() {
-        let message = format!("control `{}` gives {start} at the start", spec.name);
+    let first = control.first(start, &body.mesh.points, body.rows.start);
+    if !first.is_finite() {
+        let message = format!("control `{}` gives {first} at the start", spec.name);
         draft.log.add(Code::NotFinite, &spec.site, message, "a formula that is finite at the start");
     }
     Some((control, start))
@@ -228,10 +226,10 @@ fn mean(values: &[Vec3], rows: &Range<usize>) -> Vec3 {
 
 impl Written {
     /// Its value at the start, of masses at rest at `points`, which are rows from `first` on.
-    fn first(&self, points: &[Vec3], first: usize) -> f64 {
+    fn first(&self, before: f64, points: &[Vec3], first: usize) -> f64 {
         let rows: Vec<Vec3> = std::iter::repeat_n(Vec3::ZERO, first).chain(points.iter().copied()).collect();
         let still = vec![Vec3::ZERO; rows.len()];
-        self.decide((0.0, 0.0), (&rows, &still), 0.0)
+        self.decide((0.0, 0.0), (&rows, &still), before)
     }
 
     fn decide(

@@ -203,6 +203,8 @@ export class Picture {
     this.bodies = ofBodies.map((surface, index) => new Body(index, info.bodies[index]!, surface, networks[index], this.size));
     this.skins = info.skins.map((skin, index) => new Skin(skin, skin.worn_by ?? info.bodies.length + index));
     this.skins.forEach((skin) => this.scene.add(skin.mesh));
+    // those of the scene before
+    this.contours.update(new Float32Array());
     this.scene.add(this.contours.lines);
     this.arrows = new Arrows(this.size);
     this.scene.add(this.arrows.group);
