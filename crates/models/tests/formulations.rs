@@ -443,6 +443,53 @@ fn springs_have_the_stiffness_of_their_cells() {
     }
 }
 
+/// Turned about its far edge, a tetrahedron has one corner that is nearer to another, and all other lengths: the two pull on each other
+/// with `k Δl`, `k = E V / l²`, and nothing else is pulled.
+#[test]
+fn a_spring_of_two_nodes() {
+    let points =
+        vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 2.0)];
+    let mesh = Mesh::new(points, ElementKind::Tet4, vec![0, 1, 2, 3]);
+    let force = build("mass_spring", &mesh, &material("linear")).unwrap();
+    let mut x = mesh.points.clone();
+    let axis = x[3] - x[2];
+    x[1] = x[2] + exponential(axis * (0.2 / axis.length())) * (x[1] - x[2]);
+    let f = answers(force.as_ref(), &x).force;
+    let apart = x[1] - x[0];
+    let (stiffness, stretch) = (1e7 * (1.0 / 6.0) / 0.25, apart.length() - 0.5);
+    let pull = apart * (stiffness * stretch / apart.length());
+    assert!(stretch.abs() > 1e-3);
+    assert!((f[0] - pull).length() + (f[1] + pull).length() <= 1e-11 * pull.length(), "{f:?} {pull:?}");
+    assert!(f[2].length() + f[3].length() <= 1e-11 * pull.length(), "{f:?}");
+}
+
+/// A cube of side a has twelve springs of `k = E a³/a²`: stretched by `ε`, four of them pull with `E a² ε` each, on the corners that they
+/// join; sheared, it gives way without resistance to the first order, as nothing runs across its faces.
+#[test]
+fn a_cube_of_springs() {
+    let (side, strain, youngs_modulus) = (0.2, 0.01, 1e7);
+    let values = Values::new()
+        .with("size", Value::Vector([side; 3]))
+        .with("cells", Value::Vector([1.0; 3]))
+        .with("element", Value::Text("hex8"));
+    let mesh = souple_mesh::generate("bar", values).unwrap();
+    let force = build("mass_spring", &mesh, &material("linear")).unwrap();
+    let moved = |F: Mat3| -> Vec<Vec3> { mesh.points.iter().map(|p| F * *p).collect() };
+    let stretched = answers(force.as_ref(), &moved(Mat3::from_diagonal(Vec3::new(1.0 + strain, 1.0, 1.0))));
+    let pull = youngs_modulus * side * side * strain;
+    for (p, f) in mesh.points.iter().zip(&stretched.force) {
+        let inward = if p.x > 0.5 * side { -pull } else { pull };
+        // lengths are rounded beside their changes of a hundredth
+        assert!((*f - Vec3::new(inward, 0.0, 0.0)).length() <= 1e-12 * pull, "{p:?} {f:?}");
+    }
+    let expected = 4.0 * 0.5 * youngs_modulus * side * (strain * side).powi(2);
+    assert!((stretched.energy / expected - 1.0).abs() <= 1e-12);
+    let shear = Mat3::from_rows([[1.0, strain, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    // four springs are longer by ε²/2, where stretched ones are by ε
+    let sheared = answers(force.as_ref(), &moved(shear)).energy;
+    assert!((sheared / expected / (0.25 * strain * strain) - 1.0).abs() <= strain * strain, "{sheared}");
+}
+
 /// Pulled by `ε` along x, springs of the edges `d` of their cells hold `E/2 Σ V Σ (|F d| - |d|)²/|d|²`: about as much as the matter
 /// would, `E/2 ε² V`, were `Σ (d_x/|d|)⁴` one in each cell. It is 6/5 in regular tetrahedra, on average over all directions; between
 /// that and twice as much in a bar whose cubes are cut into tetrahedra, which has more edges along its axes.
