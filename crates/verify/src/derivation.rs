@@ -61,6 +61,7 @@ pub enum Trial {
     Turned,
     Balance,
     Samples,
+    Fragments,
 }
 
 /// The command line that prints it; settings are its arguments, `law=linear`, and its flags, `list`.
@@ -284,6 +285,7 @@ impl Trial {
             Self::Turned => battery.turned,
             Self::Balance => battery.balance,
             Self::Samples => battery.samples,
+            Self::Fragments => battery.fragments,
         }
     }
 }

@@ -432,7 +432,12 @@ pub(super) const CASES: &[Case] = &[
             1e-6,
         )
     },
-    tried("exp6_symmetry", "symmetry of the differential, the worst of all", Trial::Symmetry, 1e-12),
+    tried(
+        "exp6_symmetry",
+        "symmetry of the matrix of the differential, all of it, the worst of all",
+        Trial::Symmetry,
+        1e-12,
+    ),
     tried(
         "exp6_rigid",
         "forces of a cell that is turned and moved, the worst of all laws that do not count turns as strain",
@@ -458,6 +463,16 @@ pub(super) const CASES: &[Case] = &[
         Trial::Samples,
         1e-10,
     ),
+    Case {
+        capabilities: &["FAU-24", "FAU-26", "FAU-28"],
+        source: "specification, EXP-3 and EXP-5; every law on every element of first order, cut along all axes and in one way of fourteen more",
+        ..tried(
+            "exp3_fragments",
+            "fragments of forces and differential added up, against what is not cut, the worst of all",
+            Trial::Fragments,
+            1e-12,
+        )
+    },
     Case {
         id: "exp20_stvk_forces",
         what: "operations of the literal sums of the tensor-mass method over those of derived forces, St. Venant-Kirchhoff",
