@@ -415,7 +415,7 @@ pub(super) const CASES: &[Case] = &[
         ..DERIVED
     },
     Case {
-        mutation: "step=0.3",
+        mutation: "step=0.005",
         ..tried(
             "exp6_forces",
             "forces against differences of the energy, the worst of all",
@@ -424,7 +424,7 @@ pub(super) const CASES: &[Case] = &[
         )
     },
     Case {
-        mutation: "step=0.3",
+        mutation: "step=0.005",
         ..tried(
             "exp6_differentials",
             "differentials against differences of the forces, the worst of all",
