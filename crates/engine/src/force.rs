@@ -309,6 +309,11 @@ pub trait Force: Send + Sync {
     ) {
     }
 
+    /// What a change of its numbers makes or takes [J]: what it stores, and of laws that remember what they are about to give off of it.
+    fn held(&self, at: &Configuration, scratch: &mut Scratch) -> f64 {
+        self.energy(at, scratch).stored
+    }
+
     /// The row and, in words, what of its memory or of what it is told by formulas cannot be at the end of a period; such a step is refused.
     fn fault(&self, _at: &Configuration) -> Option<(usize, String)> {
         None

@@ -552,7 +552,7 @@ impl World {
                     .filter(|(_, force)| is_driven(&force.name()))
                     .map(|(index, force)| {
                         let at = system.view(index, &ws.rows, state, &around);
-                        force.energy(&at, &mut ws.scratches[index]).stored
+                        force.held(&at, &mut ws.scratches[index])
                     })
                     .sum()
             };

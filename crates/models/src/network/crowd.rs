@@ -142,7 +142,8 @@ impl Crowd {
         let Some(fusible) = &self.0.fusible else { return };
         self.acting(at, |acting| {
             acting.visit_standing(at, &mut Work::default(), |standing, memory| {
-                if acting.bond(fusible, standing, memory, at).rest != MOLTEN {
+                let is_near = standing.reach.length < self.0.range;
+                if is_near && acting.bond(fusible, standing, memory, at).rest != MOLTEN {
                     visit(standing.pair);
                 }
             });
@@ -171,6 +172,23 @@ impl Crowd {
             (fusible.share(self.0.timestep, neighbours[self.mass_of(row)], place), row)
         };
         self.0.first.clone().chain(second).map(share).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The sum of a number of what pairs in range do, from what they store at the range, and of what those that have just left it
+    /// stored, which they give off in the coming step [J].
+    fn sum_of(&self, at: &Configuration, scratch: &mut Scratch, number: impl Fn(Energy) -> f64) -> f64 {
+        self.acting(at, |acting| {
+            let (mut sum, at_range) = (0.0, acting.stored_at_range(at.time));
+            acting.visit_standing(at, Work::of(scratch), |standing, memory| {
+                let Some(act) = acting.act(standing, memory, at) else { return };
+                sum += if standing.reach.length < self.0.range {
+                    number(act.energy) - at_range
+                } else {
+                    act.energy.dissipated
+                };
+            });
+            sum
+        })
     }
 
     /// Beyond it there is no force [m].
@@ -253,15 +271,14 @@ impl Force for Crowd {
 
     /// Stored energy counts from the range, so that it does not jump where pairs come and go.
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
-        let stored = self.acting(at, |acting| {
-            let (mut stored, at_range) = (0.0, acting.stored_at_range(at.time));
-            acting.visit_standing(at, Work::of(scratch), |standing, memory| {
-                let act = acting.act(standing, memory, at).filter(|_| standing.reach.length < self.0.range);
-                stored += act.map_or(0.0, |act| act.energy.stored - at_range);
-            });
-            stored
-        });
+        let stored = self.sum_of(at, scratch, |energy| energy.stored);
         Energy { stored, dissipated: at.memory[0] }
+    }
+
+    fn held(&self, at: &Configuration, scratch: &mut Scratch) -> f64 {
+        // as of links
+        let remembers = self.0.law.written().memory_len() > 0;
+        self.sum_of(at, scratch, |energy| energy.stored + if remembers { energy.dissipated } else { 0.0 })
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {

@@ -247,7 +247,8 @@ impl Acting<'_> {
         work.pass.run(&with, at, out, &act);
     }
 
-    /// Calls `visit` for every pair that may be in range, with what it remembers, in the order of rows.
+    /// Calls `visit` for every pair that is in range, or was a step before and has something left, with what it remembers, in the order
+    /// of rows.
     pub fn visit_standing(
         &self,
         at: &Configuration,
@@ -262,12 +263,17 @@ impl Acting<'_> {
         }
         work.list.bring_up_to_date(self.crowd.groups(), at.positions, self.of.range);
         let mut known = Known::from(at.kept, self.crowd.own_len(), self.of.first.start);
+        let remembers = self.crowd.remembered_len() > 0;
         for (ball, row) in self.of.first.clone().enumerate() {
             for other in work.list.others(ball) {
                 let standing = self.crowd.standing([row, *other], at);
-                if standing.reach.length < self.of.range {
+                let is_near = standing.reach.length < self.of.range;
+                // what has just left gives off what it stored in the coming step
+                if is_near || (remembers && standing.reach.before < self.of.range) {
                     let known = known.find(key(standing.pair));
-                    visit(&standing, &self.recalled(known, standing.reach.length));
+                    if is_near || known.is_some() {
+                        visit(&standing, &self.recalled(known, standing.reach.length));
+                    }
                 }
             }
         }

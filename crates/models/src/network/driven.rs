@@ -47,6 +47,16 @@ enum Register {
     Named(String),
 }
 
+impl Register {
+    fn name(&self) -> String {
+        match self {
+            Self::Number(parameter) => parameter.name.to_owned(),
+            Self::OfList(parameter, index) => format!("{}[{index}]", parameter.name),
+            Self::Named(name) => name.clone(),
+        }
+    }
+}
+
 impl Recipe {
     /// Numbers of the law by the names that controls use: `stiffness`, `slopes[0]`, and those that the scene names.
     pub fn drivable(&self, law: &dyn LinkKernel) -> Vec<String> {
@@ -94,8 +104,11 @@ impl Recipe {
     fn make(&self, numbers: &[(Register, f64)]) -> Result<Box<dyn LinkKernel>, String> {
         let mut values = self.values.clone();
         for (register, number) in numbers {
+            if !number.is_finite() {
+                return Err(format!("`{}` is {number}, but must be a finite number", register.name()));
+            }
             match register {
-                Register::Number(Parameter { name, kind: Kind::Integer, .. }) if number.is_finite() => {
+                Register::Number(Parameter { name, kind: Kind::Integer, .. }) => {
                     values.set(*name, Value::Integer(number.round() as i64));
                 }
                 Register::Number(parameter) => values.set(parameter.name, Value::Number(*number)),

@@ -10,7 +10,7 @@ use souple_solve::BlockMatrix;
 
 use super::driven::DrivenLaw;
 use super::kernel::{LinkKernel, Moving};
-use super::law::{AsksFor, Moment, Reach};
+use super::law::{AsksFor, Moment, Reach, Response};
 use super::layout::{Arrangement, Ends, LANES, Layout, Part};
 use super::pair_tangent::{add_change, add_pair_blocks};
 use super::span::{Known, OnAxis, Place, Projected, Span, axis_of};
@@ -209,6 +209,25 @@ impl Links {
         stance
     }
 
+    /// The sum of a number of what links do, as much of them as acts.
+    fn sum_of(&self, at: &Configuration, number: impl Fn(Response) -> f64 + Sync) -> f64 {
+        let mut sum = 0.0;
+        self.law.acting(at.driven, &mut |law| {
+            let of_part = |number_of_part: usize| {
+                let (part, memory) =
+                    (&self.layout.parts[number_of_part], self.of_part(number_of_part, at.memory));
+                let of = |slot| {
+                    let numbers = self.remembered(part, slot, memory);
+                    let Standing { reach, moment, .. } = self.standing(part, slot, at);
+                    number(law.respond(&reach, &moment, &numbers))
+                };
+                (0..part.links.len()).map(of).sum()
+            };
+            sum = parallel::sum(0..self.layout.parts.len(), &of_part);
+        });
+        self.law.gain(at.driven) * sum
+    }
+
     /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`. Returns whether it turned
     /// any round to be definite.
     pub(super) fn visit_tangents(
@@ -362,22 +381,14 @@ impl Force for Links {
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let len = self.law.written().memory_len();
         let heat = |number: usize| at.memory[self.layout.memory_range(number, len).start];
-        let parts = 0..self.layout.parts.len();
-        let dissipated = if self.remembers() { parts.clone().map(heat).sum() } else { 0.0 };
-        let (mut stored, gain) = (0.0, self.law.gain(at.driven));
-        self.law.acting(at.driven, &mut |law| {
-            let of_part = |number: usize| {
-                let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
-                let of = |slot| {
-                    let numbers = self.remembered(part, slot, memory);
-                    let Standing { reach, moment, .. } = self.standing(part, slot, at);
-                    law.respond(&reach, &moment, &numbers).stored
-                };
-                (0..part.links.len()).map(of).sum()
-            };
-            stored = gain * parallel::sum(parts.clone(), &of_part);
-        });
-        Energy { stored, dissipated }
+        let dissipated = if self.remembers() { (0..self.layout.parts.len()).map(heat).sum() } else { 0.0 };
+        Energy { stored: self.sum_of(at, |response| response.stored), dissipated }
+    }
+
+    fn held(&self, at: &Configuration, _scratch: &mut Scratch) -> f64 {
+        // what slips in the coming step is out of what is stored now; what a damper gives off is not
+        let remembers = self.law.written().memory_len() > 0;
+        self.sum_of(at, |response| response.stored + if remembers { response.heat } else { 0.0 })
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {

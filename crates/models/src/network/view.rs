@@ -206,6 +206,13 @@ impl Force for ViewedLinks {
         self.links.energy(&inner, &mut seen.links)
     }
 
+    fn held(&self, at: &Configuration, scratch: &mut Scratch) -> f64 {
+        let seen = seen(scratch);
+        self.look(at, seen);
+        let inner = Configuration { positions: &seen.positions, velocities: &seen.velocities, ..*at };
+        self.links.held(&inner, &mut seen.links)
+    }
+
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
         let seen = seen(scratch);
         self.look(at, seen);

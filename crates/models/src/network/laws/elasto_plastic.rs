@@ -82,7 +82,10 @@ impl LinkLaw for ElastoPlastic {
         memory[COMPRESSION] = q.select_less(s3, next2 - first2, grown2);
         memory[TORN] = q.select_less(s3, torn, q.splat(1.0));
         let slipped = memory[REST] - rest;
-        Response { push: -force, stored: force * force * (0.5 * c), heat: force * slipped }
+        // what is torn gives off all that it held
+        let held = yielded * yielded * (0.5 * c) + yielded * (moved - rest);
+        let heat = q.select_less(s3, force * slipped, zero.select_less(torn, zero, held));
+        Response { push: -force, stored: force * force * (0.5 * c), heat }
     }
 
     fn is_conservative(&self) -> bool {

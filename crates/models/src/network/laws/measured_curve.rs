@@ -27,7 +27,14 @@ pub const ENTRY: LinkEntry = LinkEntry {
         let (lengths, pushes) = (values.numbers("lengths"), values.numbers("pushes"));
         can_be("lengths", lengths, making.least_length())?;
         ascends("lengths", lengths)?;
-        if lengths.len() != pushes.len() || lengths.len() < 2 {
+        if lengths.len() < 2 {
+            return Err(LinkError::Unfit {
+                parameter: "lengths",
+                value: format!("{lengths:?}"),
+                expected: "a curve goes through two points at least".to_owned(),
+            });
+        }
+        if lengths.len() != pushes.len() {
             return Err(LinkError::Unfit {
                 parameter: "pushes",
                 value: format!("{pushes:?}"),
