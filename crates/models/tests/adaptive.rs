@@ -137,7 +137,7 @@ fn materials_adapt_each_to_its_own() {
         let part: Vec<u16> = (0..count).map(|cell| (cell * 3 / count) as u16).collect();
         let adaptation = Adaptation { thresholds: vec![(Criterion::Length, 0.1)], back: 0.5 };
         let force = AdaptiveForce::new(&describe(&mesh, &firsts, &part), &seconds, adaptation).unwrap();
-        for is_second in [|_| false, |_| true, |cell: usize| cell * 7 % 3 == 0] {
+        for is_second in [|_| false, |_| true, |cell: usize| (cell * 7).is_multiple_of(3)] {
             let of_cell: Vec<u16> =
                 part.iter().enumerate().map(|(cell, part)| part + 3 * u16::from(is_second(cell))).collect();
             let mut memory: Vec<f64> = (0..count).map(|cell| f64::from(u8::from(is_second(cell)))).collect();

@@ -3,7 +3,7 @@
 use souple_mesh::{BoundingBox, Mesh};
 
 /// Of each point of a network with these radii, none of other bodies, whether it stands for ground or a wall: a ball whose radius is more than
-/// [`MUCH_LARGER`] than all smaller ones together span, which no link joins. Where others touch it, it is nearly a plane, and
+/// a hundred times what all smaller ones together span, which no link joins. Where others touch it, it is nearly a plane, and
 /// pictures make no more room for it than for one.
 pub fn grounds(mesh: &Mesh, radii: &[f64]) -> Vec<bool> {
     if radii.is_empty() {

@@ -63,8 +63,8 @@ fn exponential_pieces(
     let (mut knots, mut slopes, mut from) = (vec![0.0], Vec::new(), 0.0);
     while from < deepest {
         let mut to = deepest;
-        // written so that what overflows is too far off
-        let is_off = |to: f64| !(off(from, to) <= error);
+        // what overflows is too far off
+        let is_off = |to: f64| !off(from, to).is_finite() || off(from, to) > error;
         if is_off(to) {
             // the longest chord that is near enough: its distance grows with its length
             let (mut near, mut far) = (from, to);
