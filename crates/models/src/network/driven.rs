@@ -60,30 +60,31 @@ impl Register {
 impl Recipe {
     /// Numbers of the law by the names that controls use: `stiffness`, `slopes[0]`, and those that the scene names.
     pub fn drivable(&self, law: &dyn LinkKernel) -> Vec<String> {
-        let names = self.registers().into_iter().map(|(name, _)| name);
+        let names = self.registers().into_iter().map(|register| register.name());
         names.filter(|name| !law.begins_with().contains(&name.as_str())).collect()
     }
 
-    fn registers(&self) -> Vec<(String, Register)> {
+    fn registers(&self) -> Vec<Register> {
         let of = |parameter: &'static Parameter| match (parameter.kind, self.values.get(parameter.name)) {
-            (Kind::Number | Kind::Integer, _) => {
-                vec![(parameter.name.to_owned(), Register::Number(parameter))]
+            (Kind::Number | Kind::Integer, _) => vec![Register::Number(parameter)],
+            (Kind::Numbers, Some(Value::Numbers(numbers))) => {
+                (0..numbers.len()).map(|i| Register::OfList(parameter, i)).collect()
             }
-            (Kind::Numbers, Some(Value::Numbers(numbers))) => (0..numbers.len())
-                .map(|i| (format!("{}[{i}]", parameter.name), Register::OfList(parameter, i)))
-                .collect(),
             (Kind::Texts, Some(Value::Texts(texts))) if parameter.name == NAMED => {
-                texts.iter().map(|(name, _)| (name.clone(), Register::Named(name.clone()))).collect()
+                texts.iter().map(|(name, _)| Register::Named(name.clone())).collect()
             }
             _ => Vec::new(),
         };
         self.entry.parameters.iter().flat_map(of).collect()
     }
 
+    fn register(&self, name: &str) -> Option<Register> {
+        self.registers().into_iter().find(|register| register.name() == name)
+    }
+
     /// A number as it is written.
     pub fn written(&self, name: &str) -> Option<f64> {
-        let (_, register) = self.registers().into_iter().find(|(known, _)| known == name)?;
-        match &register {
+        match &self.register(name)? {
             Register::Number(parameter) => match self.values.get(parameter.name)? {
                 Value::Number(number) => Some(number),
                 Value::Integer(number) => Some(number as f64),
@@ -146,11 +147,18 @@ enum Driving {
     Nothing,
     /// Registers of the law ([`LinkKernel::registers`]) and places of their values.
     InPlace(Vec<(usize, usize)>),
-    Anew {
-        recipe: Recipe,
-        registers: Vec<(Register, usize)>,
-        last: Mutex<Made>,
-    },
+    Anew(Anew),
+}
+
+/// A law that is made again for other numbers.
+#[derive(Debug)]
+struct Anew {
+    recipe: Recipe,
+    /// With the places of their values.
+    registers: Vec<(Register, usize)>,
+    /// Of links of the law as it is written.
+    memory_len: usize,
+    last: Mutex<Made>,
 }
 
 /// A law for some values.
@@ -184,27 +192,21 @@ impl DrivenLaw {
         if let Some(registers) = own {
             return Self { gain, driving: Driving::InPlace(registers), ..law.into() };
         }
-        let known = recipe.registers();
-        let registers: Vec<(Register, usize)> = wiring
-            .parameters
-            .iter()
-            .map(|(name, slot)| {
-                let register = known.iter().find(|(known, _)| known == name);
-                (register.unwrap_or_else(|| panic!("`{name}` cannot be driven")).1.clone(), *slot)
-            })
-            .collect();
+        let register =
+            |name: &String| recipe.register(name).unwrap_or_else(|| panic!("`{name}` cannot be driven"));
+        let registers: Vec<(Register, usize)> =
+            wiring.parameters.iter().map(|(name, slot)| (register(name), *slot)).collect();
         // energy that the law of the scene keeps another number may not: a damper that is driven from nothing
-        let at_work = |name: &String| recipe.written(name).filter(|number| *number != 0.0).unwrap_or(1.0);
-        let names = wiring.parameters.iter().map(|(name, _)| name);
-        let others: Vec<_> = registers
-            .iter()
-            .zip(names)
-            .map(|((register, _), name)| (register.clone(), at_work(name)))
-            .collect();
+        let at_work = |register: &Register| {
+            recipe.written(&register.name()).filter(|number| *number != 0.0).unwrap_or(1.0)
+        };
+        let others: Vec<_> =
+            registers.iter().map(|(register, _)| (register.clone(), at_work(register))).collect();
         let is_conservative =
             law.is_conservative() && recipe.make(&others).is_ok_and(|law| law.is_conservative());
         let last = Mutex::new(Made { numbers: Vec::new(), law: Arc::new(Err(String::new())) });
-        Self { law, gain, driving: Driving::Anew { recipe, registers, last }, is_conservative }
+        let anew = Anew { recipe, registers, memory_len: law.memory_len(), last };
+        Self { law, gain, driving: Driving::Anew(anew), is_conservative }
     }
 
     /// The law as it is written.
@@ -234,8 +236,8 @@ impl DrivenLaw {
                 }
                 self.law.driven(&values[..count], act);
             }
-            Driving::Anew { recipe, registers, last } => {
-                let made = self.made(recipe, registers, last, driven);
+            Driving::Anew(anew) => {
+                let made = anew.made(driven);
                 act(made.as_ref().as_ref().map_or(&*self.law, |law| &**law));
             }
         }
@@ -243,26 +245,22 @@ impl DrivenLaw {
 
     /// What of the driven numbers makes no law.
     pub fn fault(&self, driven: &[f64]) -> Option<String> {
-        let Driving::Anew { recipe, registers, last } = &self.driving else { return None };
-        self.made(recipe, registers, last, driven).as_ref().as_ref().err().cloned()
+        let Driving::Anew(anew) = &self.driving else { return None };
+        anew.made(driven).as_ref().as_ref().err().cloned()
     }
+}
 
-    fn made(
-        &self,
-        recipe: &Recipe,
-        registers: &[(Register, usize)],
-        last: &Mutex<Made>,
-        driven: &[f64],
-    ) -> Arc<Result<Box<dyn LinkKernel>, String>> {
-        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = registers.iter().map(|(_, slot)| driven[*slot]);
-        let is_other = |(a, b): (&f64, f64)| a.to_bits() != b.to_bits();
-        if last.numbers.len() != registers.len() || last.numbers.iter().zip(now).any(is_other) {
-            let numbers: Vec<_> =
-                registers.iter().map(|(register, slot)| (register.clone(), driven[*slot])).collect();
-            let law = recipe.make(&numbers).and_then(|law| self.fits(law));
-            *last =
-                Made { numbers: numbers.into_iter().map(|(_, number)| number).collect(), law: Arc::new(law) };
+impl Anew {
+    fn made(&self, driven: &[f64]) -> Arc<Result<Box<dyn LinkKernel>, String>> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = || self.registers.iter().map(|(_, slot)| driven[*slot]);
+        let is_same = last.numbers.len() == self.registers.len()
+            && last.numbers.iter().zip(now()).all(|(a, b)| a.to_bits() == b.to_bits());
+        if !is_same {
+            let registers = self.registers.iter().map(|(register, _)| register.clone());
+            let numbers: Vec<_> = registers.zip(now()).collect();
+            let law = self.recipe.make(&numbers).and_then(|law| self.fits(law));
+            *last = Made { numbers: now().collect(), law: Arc::new(law) };
         }
         last.law.clone()
     }
@@ -270,7 +268,7 @@ impl DrivenLaw {
     /// # Errors
     /// The law remembers other numbers than links of this one have.
     fn fits(&self, law: Box<dyn LinkKernel>) -> Result<Box<dyn LinkKernel>, String> {
-        let (own, other) = (self.law.memory_len(), law.memory_len());
+        let (own, other) = (self.memory_len, law.memory_len());
         if own == other {
             return Ok(law);
         }
