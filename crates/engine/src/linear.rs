@@ -2,7 +2,7 @@
 //! what is done where the tangent is not positive definite.
 //!
 //! Nothing of earlier solves enters later bits: orders and patches refer to a reference configuration that lives in
-//! State, values to the matrix at hand, and every solve starts from zero.
+//! State, values to the matrix at hand, and every solve starts from zero or from the velocities of State.
 
 use std::sync::Arc;
 
@@ -373,8 +373,8 @@ impl LinearSolver {
         self.reference = None;
     }
 
-    /// Solves `A x = b`, symmetric and known by its products, with the factor of the reference configuration as it has turned; `None`
-    /// where the matrix itself is needed.
+    /// Solves `A x = b` from the `x` given, symmetric and known by its products, with the factor of the reference configuration as it has
+    /// turned; `None` where the matrix itself is needed.
     pub fn solve_by_reference(
         &mut self,
         operator: &dyn LinearOperator,
@@ -388,7 +388,6 @@ impl LinearSolver {
             max_iterations: self.settings.max_iterations.min(WORTH_A_MATRIX),
         };
         let mut workspace = std::mem::take(&mut factor.workspace);
-        x.fill(Vec3::ZERO);
         let report = conjugate_gradient(operator, &**factor, b, x, &settings, &mut workspace);
         factor.workspace = workspace;
         let stagnated_at_most = wanted.used_as.stagnated_at_most(settings.tolerance);
@@ -419,7 +418,7 @@ impl LinearSolver {
             + 8 * self.diagonal.len()
     }
 
-    /// Solves `A x = b`; overwrites `x`.
+    /// Solves `A x = b`, symmetric systems by iteration from the `x` given, all others from zero.
     ///
     /// # Errors
     /// The method broke down or missed its tolerance.
@@ -496,7 +495,6 @@ impl LinearSolver {
             system.reference,
             Some((system.kinematics, system.positions)),
         )?;
-        x.fill(Vec3::ZERO);
         made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
         judged(
             made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x),
@@ -599,6 +597,7 @@ impl LinearSolver {
                 *block = block.plus_diagonal((shift - before) * diagonal);
             }
             before = shift;
+            x.fill(Vec3::ZERO);
             match self.solve_symmetric(system, b, x) {
                 Err(SolveError::NotConverged {
                     iterations,

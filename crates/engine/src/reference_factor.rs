@@ -9,9 +9,13 @@
 //! `A₀` depends on the model, on the rates of the formula and on a reference configuration that lives in State, so that a run that is
 //! resumed has the bits of one that was not.
 
+use std::sync::Arc;
+
 use souple_math::{Mat3, Vec3, polar};
 use souple_solve::krylov::ConjugateGradientWorkspace;
-use souple_solve::{BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, SolveError};
+use souple_solve::{
+    BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, RoundedFactor, SolveError,
+};
 
 use crate::force::Scratch;
 use crate::implicit::Rates;
@@ -20,9 +24,16 @@ use crate::state::SystemState;
 use crate::system::{Rows, Surroundings, System};
 use crate::tangent::{Linearisation, Tangent};
 
+/// The factor of `A₀`, in single precision where that keeps enough of it: what it lacks costs no more than a part of an iteration.
+enum Factor {
+    Rounded(RoundedFactor),
+    Whole(Box<DirectSolver>),
+}
+
 /// The factor of `A₀`, and how unknowns have turned since.
 pub struct ReferenceFactor {
-    factor: DirectSolver,
+    factor: Factor,
+    pattern: Arc<Pattern>,
     /// Free rows of the reference configuration.
     reference: Vec<Vec3>,
     rates: Rates,
@@ -69,8 +80,11 @@ impl ReferenceFactor {
         let mut factor = DirectSolver::analyse(matrix.pattern(), Some(&block_positions))?;
         factor.factorize(matrix)?;
         let diagonal = (0..matrix.block_count()).map(|block| matrix.diagonal_block(block).trace() / 3.0);
+        let (diagonal, pattern) = (diagonal.collect(), Arc::clone(matrix.pattern()));
+        let factor = factor.into_rounded().map_or_else(Factor::Whole, Factor::Rounded);
         Ok(Self {
-            diagonal: diagonal.collect(),
+            diagonal,
+            pattern,
             turns: vec![Mat3::IDENTITY; matrix.block_count()],
             workspace: ConjugateGradientWorkspace::new(matrix.block_count()),
             reference,
@@ -86,12 +100,12 @@ impl ReferenceFactor {
 
     /// Takes note of how unknowns have turned.
     pub fn follow(&mut self, kinematics: &Kinematics, q: &[Vec3]) {
-        let Self { factor, reference, turns, .. } = self;
+        let Self { pattern, reference, turns, .. } = self;
         let axes = |q: &[Vec3], row: usize| Mat3::from_columns(q[row + 1], q[row + 2], q[row + 3]);
         let mut row = 0;
         for (kind, blocks) in kinematics.unknowns() {
             let turn = match kind {
-                UnknownKind::Point => turn_of_point(kinematics, factor.pattern(), blocks.start, reference, q),
+                UnknownKind::Point => turn_of_point(kinematics, pattern, blocks.start, reference, q),
                 UnknownKind::RigidFrame => axes(q, row).mul_transpose(&axes(reference, row)),
                 UnknownKind::AffineFrame => {
                     polar(&axes(q, row).mul_transpose(&axes(reference, row))).rotation
@@ -109,7 +123,11 @@ impl ReferenceFactor {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.factor.bytes()
+        let factor = match &self.factor {
+            Factor::Rounded(factor) => factor.bytes(),
+            Factor::Whole(factor) => factor.bytes(),
+        };
+        factor
             + size_of::<Vec3>() * self.reference.capacity()
             + size_of::<Mat3>() * self.turns.capacity()
             + 8 * self.diagonal.capacity()
@@ -144,9 +162,14 @@ impl Preconditioner for ReferenceFactor {
         for ((z, r), turn) in z.iter_mut().zip(r).zip(&self.turns) {
             *z = turn.transpose_apply(*r);
         }
-        if self.factor.solve(z).is_err() {
-            z.copy_from_slice(r);
-            return;
+        match &self.factor {
+            Factor::Rounded(factor) => factor.solve(z),
+            Factor::Whole(factor) => {
+                if factor.solve(z).is_err() {
+                    z.copy_from_slice(r);
+                    return;
+                }
+            }
         }
         for (z, turn) in z.iter_mut().zip(&self.turns) {
             *z = *turn * *z;

@@ -28,6 +28,7 @@ mod snapshot_file;
 mod sound;
 mod spectrum;
 mod trace;
+mod wavering;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -19,6 +19,7 @@ use crate::recording::{Recording, add_hash};
 use crate::report::{AroundSteps, Report, SkinChange, Status, attachments, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
+use crate::wavering::Wavering;
 use crate::{Options, RunError, forecast_warnings};
 
 /// A world with what is measured of it, and all that a recording and a report of it need.
@@ -38,6 +39,7 @@ pub struct Session {
     /// What watches its energy, where the scene asks for it.
     pub monitor: Option<Monitor>,
     leaps: Leaps,
+    wavering: Wavering,
     /// Most that the world was seen to hold [bytes].
     held: usize,
     /// Why it cannot go on.
@@ -116,6 +118,7 @@ impl Session {
             first_step: world.state().period,
             energy_at_start: world.energy(),
             momentum_at_start: world.momentum(),
+            wavering: Wavering::new(&world, &bodies),
             bodies,
             skins,
             hands,
@@ -154,6 +157,7 @@ impl Session {
                 self.solver.merge(self.world.last_report());
                 self.note_changes(&before);
                 self.warnings.extend(self.leaps.look(&self.world));
+                self.warnings.extend(self.wavering.look(&self.world, &self.bodies));
                 Stepped::On
             }
             Err(error) if error.error == StepError::Interrupted => Stepped::BrokenOff,

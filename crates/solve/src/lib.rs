@@ -23,7 +23,7 @@ pub mod reduce;
 pub mod solvers;
 mod spare;
 
-pub use direct::DirectSolver;
+pub use direct::{DirectSolver, RoundedFactor};
 pub use error::SolveError;
 pub use lu::LuSolver;
 pub use matrix::BlockMatrix;

@@ -37,6 +37,26 @@ fn cg(
     conjugate_gradient(matrix, preconditioner, b, x, &settings, &mut ConjugateGradientWorkspace::default())
 }
 
+/// A start near the solution saves iterations; one that is worse than zero costs none.
+#[test]
+fn good_starts_are_taken_and_bad_ones_left() {
+    let truss = truss([8, 4, 3], 200.0);
+    let b = noise(truss.places.len(), 5);
+    let expected = dense_solve(&truss.matrix, &b);
+    let jacobi = BlockJacobi::new(&truss.matrix).unwrap();
+    let from = |start: Vec<Vec3>| {
+        let mut x = start;
+        let report = cg(&truss.matrix, &jacobi, &b, &mut x, 1e-9);
+        assert!(report.converged() && distance(&x, &expected) < 1.01e-9 * norm(&b));
+        report.iterations
+    };
+    let zero = from(vec![Vec3::ZERO; b.len()]);
+    let near = from(expected.iter().zip(noise(b.len(), 7)).map(|(x, noise)| *x + noise * 1e-5).collect());
+    let far = from(expected.iter().map(|x| *x * -3.0).collect());
+    assert!(near < zero, "{near} of {zero}");
+    assert_eq!(far, zero);
+}
+
 /// Several threads ask one preconditioner at once, each of which shares out the work of its own application: none waits for itself, and the bits
 /// are those of one after another.
 #[test]

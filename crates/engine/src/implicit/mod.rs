@@ -170,9 +170,18 @@ enum Constrained {
     Led,
 }
 
+/// Where the iterations of a linear solve begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    Zero,
+    /// Where the velocities of the start lead: motion that goes on as it was is solved for already.
+    Coasting,
+}
+
 /// What is asked of a linear solve.
 #[derive(Clone, Copy, Debug)]
 struct Wanted {
+    from: Start,
     constrained: Constrained,
     indefinite: Indefinite,
     used_as: Use,
@@ -451,7 +460,15 @@ impl ImplicitStep<'_> {
         }
         let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
         let ImplicitBuffers {
-            unbalanced, direction, rhs, q_trial, v_trial, operator, block_positions, ..
+            unbalanced,
+            direction,
+            rhs,
+            q_trial,
+            v_trial,
+            v_start,
+            operator,
+            block_positions,
+            ..
         } = buffers;
         let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
         let is_matrix_free = linear.is_matrix_free();
@@ -501,10 +518,22 @@ impl ImplicitStep<'_> {
             used_as: wanted.used_as,
             tolerance: wanted.tolerance,
         };
+        self.begin_at(wanted.from, v_start, direction);
         let solved = linear.solve(linear_system, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
         stages.products += operator.take_seconds();
         Attempt { solved: solved.map(|solved| Solved { made_definite: turned, ..solved }), rounding }
+    }
+
+    /// Where a linear solve begins.
+    fn begin_at(&self, from: Start, v_start: &[Vec3], direction: &mut [Vec3]) {
+        direction.fill(Vec3::ZERO);
+        if from == Start::Coasting && self.rates.has_inertia() {
+            for (direction, velocity) in direction.iter_mut().zip(v_start) {
+                *direction = *velocity * (1.0 / self.rates.velocity);
+            }
+            self.system.project_free(direction);
+        }
     }
 
     /// `direction = A⁻¹ rhs` by products and the factor of the reference configuration; `None` where that does not do. Of turning frames
@@ -519,7 +548,15 @@ impl ImplicitStep<'_> {
         let system = self.system;
         let SystemWorkspace { scratches, rows, linear, stages, .. } = ws;
         let ImplicitBuffers {
-            unbalanced, direction, rhs, q_trial, v_trial, operator, block_positions, ..
+            unbalanced,
+            direction,
+            rhs,
+            q_trial,
+            v_trial,
+            v_start,
+            operator,
+            block_positions,
+            ..
         } = buffers;
         let clock = Instant::now();
         let reference = history::reference(&system.kinematics, &state.history);
@@ -535,6 +572,7 @@ impl ImplicitStep<'_> {
         let asked = ByReference { indefinite, used_as, tolerance };
         let part = if system.kinematics.has_rigid_frames() { Part::Symmetric } else { Part::Whole };
         let products = TangentOperator::new(&at, part, scratches, operator);
+        self.begin_at(wanted.from, v_start, direction);
         let solved = linear.solve_by_reference(&products, &asked, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
         stages.products += operator.take_seconds();
@@ -599,7 +637,8 @@ impl ImplicitStep<'_> {
         let constrained = if is_led { Constrained::Led } else { Constrained::Still };
         let is_matrix_free = ws.linear.is_matrix_free();
         let indefinite = if is_matrix_free { Indefinite::Solve } else { Indefinite::Refuse };
-        let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
+        let from = if turns { Start::Zero } else { Start::Coasting };
+        let wanted = Wanted { from, constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         let fraction = self.hold_back(state, q, ws, buffers);
         self.go(q, fraction, buffers);

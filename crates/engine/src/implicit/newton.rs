@@ -6,7 +6,9 @@ use souple_solve::newton::{self, NewtonProblem, Trial, newton};
 use souple_solve::reduce::norm;
 
 use super::history::Lent;
-use super::{Constrained, ImplicitBuffers, ImplicitStep, MAX_HALVINGS, NewtonSettings, Wanted, largest};
+use super::{
+    Constrained, ImplicitBuffers, ImplicitStep, MAX_HALVINGS, NewtonSettings, Start, Wanted, largest,
+};
 use crate::linear::{Indefinite, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
@@ -117,7 +119,8 @@ impl ImplicitProblem<'_, '_> {
     fn solve(&mut self, constrained: Constrained, tolerance: f64) -> Result<Solved, StepError> {
         self.ws.interruption.check()?;
         let indefinite = if self.step.is_symmetric() { Indefinite::Descend } else { Indefinite::Solve };
-        let wanted = Wanted { constrained, indefinite, used_as: Use::Direction, tolerance };
+        let wanted =
+            Wanted { from: Start::Zero, constrained, indefinite, used_as: Use::Direction, tolerance };
         let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, wanted)?;
         // forces are sums of terms that cancel
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));

@@ -44,7 +44,7 @@ impl ConjugateGradientWorkspace {
     }
 }
 
-/// Solves `A x = b`, starting from the `x` given.
+/// Solves `A x = b`, starting from the `x` given, or from zero where that is nearer by the residual.
 ///
 /// On [`Stop::Indefinite`] and on [`Stop::IterationLimit`] `x` is the best iterate so far: each one
 /// minimises the energy `x · A x / 2 − b · x` over all directions searched.
@@ -76,6 +76,11 @@ pub fn conjugate_gradient(
     } else {
         operator.residual(b, x, r).sqrt()
     };
+    if residual_norm > b_norm {
+        x.fill(Vec3::ZERO);
+        r.copy_from_slice(b);
+        residual_norm = b_norm;
+    }
     if !(residual_norm.is_finite() && b_norm.is_finite()) {
         return report(0, residual_norm, Stop::NotFinite);
     }

@@ -1,0 +1,33 @@
+//! Elements that change their law to and fro are told of.
+
+use std::path::Path;
+
+use souple_run::{Control, Options, Outcome, run};
+
+const BAR: &str = include_str!("../../../scenes/adaptive_bar/scene.toml");
+
+fn go(settings: &[&str]) -> Outcome {
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+    let scene = souple_scene::read_text("adaptive_bar", BAR, Path::new("."), &settings);
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    run(scene, &Options::default(), &mut |_| Control::Continue).expect("a run")
+}
+
+/// Where elements may return, those of the bar at rest go over what leads to the other law under either, in every period: that is told once,
+/// with what to change. Those that keep their second law, as the scene has it, come to rest.
+#[test]
+fn wavering_elements_are_told() {
+    let told = |outcome: &Outcome| -> Vec<String> {
+        let of = |warning: &&String| warning.starts_with("elements waver");
+        outcome.report.warnings.iter().filter(of).cloned().collect()
+    };
+    let coarse = ["bodies.bar.mesh.cells=[12, 2, 2]", "run.duration=\"1 s\""];
+    let returning = go(&[&coarse[..], &["bodies.bar.adapt.back=0.8"]].concat());
+    let said = told(&returning);
+    assert!(
+        said.len() == 1 && said[0].contains("body `bar`") && said[0].contains("`adapt.back`"),
+        "{:?}",
+        returning.report.warnings
+    );
+    assert!(told(&go(&coarse)).is_empty());
+}
