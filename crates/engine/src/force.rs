@@ -10,6 +10,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
+use crate::binding::Binding;
 use crate::hand::InHand;
 use crate::holding::Holding;
 use crate::kept::{Kept, KeptRef};
@@ -406,6 +407,12 @@ pub trait Force: Send + Sync {
 
     /// What moves points by itself and feels what they resist with; `None` of a force that only acts on them.
     fn holding(&self) -> Option<&dyn Holding> {
+        None
+    }
+
+    /// What of it relates points by forces that a step solves for; `None` of a force that says itself how it pushes. Between steps such a
+    /// force gives what was found last.
+    fn binding(&self) -> Option<&dyn Binding> {
         None
     }
 

@@ -3,6 +3,7 @@
 //! A [`Model`] is constant, a [`State`] holds all that evolves, a [`Workspace`] is scratch; a [`World`] steps
 //! the three together. A [`Force`] is a term in a list; unknowns, rows and samples are in [`kinematics`].
 
+pub mod binding;
 pub mod constraint;
 mod control;
 pub mod coupling;
@@ -32,6 +33,7 @@ pub mod tangent;
 pub mod tool;
 pub mod world;
 
+pub use binding::Binding;
 pub use constraint::{Constraint, Motion};
 pub use control::{CONTROL_LEN, Control};
 pub use edit::{Command, Edit, EditError};

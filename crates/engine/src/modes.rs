@@ -10,10 +10,21 @@ use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 use crate::tangent::Linearisation;
 
+/// Modes that cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum ModesError {
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    #[error(
+        "`{force}` relates points by forces that are solved for in steps, which have no stiffness that modes could be found of; a stiff link, or a constraint with `augmented`, has one"
+    )]
+    Bound { force: String },
+}
+
 /// The lowest modes about the placed rows; shapes are over velocity blocks.
 ///
 /// # Errors
-/// More modes asked for than there are, or a stiffness that cannot be factorised: a body that is free to move
+/// More modes asked for than there are, points that relations bind, or a stiffness that cannot be factorised: a body that is free to move
 /// has modes of frequency zero and needs a small negative shift.
 pub fn lowest(
     system: &System,
@@ -21,7 +32,10 @@ pub fn lowest(
     around: &Surroundings,
     ws: &mut SystemWorkspace,
     settings: &Settings,
-) -> Result<Modes, SolveError> {
+) -> Result<Modes, ModesError> {
+    if let Some(force) = system.forces.iter().find(|force| force.binding().is_some()) {
+        return Err(ModesError::Bound { force: force.name().to_owned() });
+    }
     let balanced = vec![Vec3::ZERO; system.kinematics.row_count()];
     let SystemWorkspace { scratches, rows, tangent, .. } = ws;
     let at = Linearisation {
@@ -42,5 +56,5 @@ pub fn lowest(
     mass.constrain_blocks(held, 0.0)?;
     let mut positions = Vec::new();
     system.block_positions_into(&rows.positions, &mut positions);
-    lowest_modes(stiffness, &mass, Some(&positions), settings)
+    Ok(lowest_modes(stiffness, &mass, Some(&positions), settings)?)
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use souple_math::{Mat3, Vec3, logarithm, orthonormalised};
 
+use crate::binding::Bound;
 use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
 use crate::holding::HeldPoints;
@@ -70,6 +71,7 @@ pub struct SystemWorkspace {
     pub implicit: Option<ImplicitBuffers>,
     pub staggered: StaggeredBuffers,
     pub held: HeldPoints,
+    pub(crate) bound: Bound,
     pub stages: StageTimes,
     /// What may break a step off.
     pub interruption: Interruption,
@@ -168,6 +170,7 @@ impl SystemWorkspace {
             + self.tangent.bytes()
             + self.linear.bytes()
             + self.held.bytes()
+            + self.bound.bytes()
             + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
     }
 }
@@ -191,6 +194,13 @@ impl System {
         if let Some(force) = holds.filter(|_| !self.stepper.holds_points(self)) {
             return Some(format!(
                 "`{}` moves the points that it holds, which `staggered` does of bodies with levels, and `symplectic_euler` of points with lumped masses",
+                force.name()
+            ));
+        }
+        let binds = self.forces.iter().find(|force| force.binding().is_some());
+        if let Some(force) = binds.filter(|_| !self.stepper.binds_points(self)) {
+            return Some(format!(
+                "`{}` relates points by forces that are solved for, which `symplectic_euler` and `t_simulation` do of points with lumped masses",
                 force.name()
             ));
         }
@@ -248,6 +258,7 @@ impl System {
             implicit: None,
             staggered: StaggeredBuffers::default(),
             held: HeldPoints::default(),
+            bound: Bound::default(),
             stages: StageTimes::default(),
             interruption: Interruption::default(),
         }

@@ -73,7 +73,8 @@ impl Failure {
             | StepError::MotionNotFinite { block, .. } => row_of(system, *block),
             StepError::ForceNotFinite { row, .. }
             | StepError::SlopeNotFinite { row, .. }
-            | StepError::Fault { row, .. } => Some(*row),
+            | StepError::Fault { row, .. }
+            | StepError::Unkept { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".v") => {
                 row_of(system, field.index)

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use souple_engine::modes::ModesError;
 use souple_scene::Scene;
 use souple_solve::SolveError;
 use souple_solve::modes::Settings;
@@ -21,13 +22,13 @@ pub struct NaturalFrequencies {
 #[error("system `{system}`: {source}{}", hint(.source))]
 pub struct FrequencyError {
     pub system: String,
-    pub source: SolveError,
+    pub source: ModesError,
 }
 
 /// What helps.
-fn hint(error: &SolveError) -> &'static str {
+fn hint(error: &ModesError) -> &'static str {
     match error {
-        SolveError::Singular { .. } => {
+        ModesError::Solve(SolveError::Singular { .. }) => {
             "; bodies that are free to move have frequencies of zero: look near another one (`--near 1`)"
         }
         _ => "",

@@ -1,6 +1,7 @@
 //! The tests of this crate, which are one program: as many programs as files would be linked one by one, each with all
 //! that the crate stands on.
 
+mod constraints;
 mod contacts;
 mod controls;
 mod doubts;

@@ -6,6 +6,7 @@ use std::time::Instant;
 use souple_math::Vec3;
 use souple_solve::reduce::{self, KickAndDrift};
 
+use crate::binding::bind;
 use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
 use crate::kept::Summed;
 use crate::state::SystemState;
@@ -138,6 +139,9 @@ fn step_points(
     system.advance_memory(ws, next, around, timestep, Summed::Here);
     system.project_free(&mut ws.row_force);
     ws.held.take_over(&mut ws.row_force, &mut ws.rows.velocities);
+    if system.binds() {
+        bind(step, next, ws)?;
+    }
     let (forces, masses, rows) = (&ws.row_force, &system.mass.diagonal, &mut ws.rows);
     let (q, v) = (&mut rows.positions, &mut rows.velocities);
     let copies = [&mut next.q[..], &mut next.v[..]];
@@ -152,6 +156,27 @@ fn step_points(
         (next.q[block], next.v[block]) = (q[block], v[block]);
     }
     Ok(StepReport::default())
+}
+
+/// The accelerations `f/m` of points at the start of a step, with the forces that keep relations about it.
+pub(super) fn bound_accelerations(
+    step: &Step,
+    next: &mut SystemState,
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<(), StepError> {
+    let Step { system, around, start, .. } = *step;
+    system.place_rows(&next.q, &next.v, start, &mut ws.rows);
+    sum_placed_forces(system, around, next, ws)?;
+    system.project_free(&mut ws.row_force);
+    // nothing moves: no work is done, and the step that follows finds the forces anew
+    let memory = next.memory.clone();
+    bind(step, next, ws)?;
+    next.memory = memory;
+    for (out, (force, mass)) in out.iter_mut().zip(ws.row_force.iter().zip(&system.mass.diagonal)) {
+        *out = *force / *mass;
+    }
+    Ok(())
 }
 
 /// Sums forces over the placed rows, and lets who holds points feel what bodies do to these.
@@ -257,6 +282,10 @@ impl Stepper for SymplecticEuler {
     }
 
     fn holds_points(&self, system: &System) -> bool {
+        steps_points(system)
+    }
+
+    fn binds_points(&self, system: &System) -> bool {
         steps_points(system)
     }
 

@@ -131,6 +131,10 @@ pub enum StepError {
         "what touches changed {searches} times within a step, and with it where the step leads; take a smaller step or more load steps"
     )]
     PairsUnsettled { searches: u32 },
+    #[error(
+        "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: what it joins is held elsewhere, or others contradict it"
+    )]
+    Unkept { force: String, relation: String, off: f64, row: usize, time: f64 },
     #[error("{0}")]
     Field(String),
     /// It was broken off from outside ([`crate::Interruption`]).
@@ -218,6 +222,11 @@ pub trait Stepper: Send + Sync {
 
     /// Whether it leads points that forces hold, see [`crate::Holding`].
     fn holds_points(&self, _system: &System) -> bool {
+        false
+    }
+
+    /// Whether it solves for the forces of relations between points, see [`crate::Binding`].
+    fn binds_points(&self, _system: &System) -> bool {
         false
     }
 

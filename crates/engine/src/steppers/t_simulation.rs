@@ -7,7 +7,7 @@ use crate::inertia::accelerations_at;
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
 
-use super::explicit::{Drifts, OneForce, kick, steps_points};
+use super::explicit::{Drifts, OneForce, bound_accelerations, kick, steps_points};
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// `X' = 2 X - X_before + h² F/m` with `F` of `X` and `X_before` alone: what an input does is seen one step later.
@@ -53,6 +53,10 @@ impl Stepper for TSimulation {
         ENTRY.name
     }
 
+    fn binds_points(&self, system: &System) -> bool {
+        steps_points(system)
+    }
+
     fn stability(&self) -> Stability {
         Stability::Limited(2.0)
     }
@@ -77,7 +81,11 @@ impl Stepper for TSimulation {
         let Step { system, around, start, timestep } = *step;
         if self.start == Start::Trajectory && next.history.is_empty() {
             let mut acceleration = vec![Vec3::ZERO; next.v.len()];
-            accelerations_at(system, around, start, next, ws, &mut acceleration)?;
+            if system.binds() {
+                bound_accelerations(step, next, ws, &mut acceleration)?;
+            } else {
+                accelerations_at(system, around, start, next, ws, &mut acceleration)?;
+            }
             kick(&mut next.v, &acceleration, -0.5 * timestep);
             next.history.push(1.0);
         }

@@ -4,6 +4,7 @@
 //! lives in State. Laws are in [`laws`], one file and one line of its table each.
 
 mod cases;
+pub mod constraints;
 pub mod contour;
 pub mod crowd;
 mod crowd_acting;
@@ -21,12 +22,14 @@ pub mod laws;
 mod layout;
 mod pair_tangent;
 mod piecewise;
+pub mod relations;
 mod rheology;
 mod sample;
 mod span;
 mod view;
 pub mod written;
 
+pub use constraints::{Augmented, Constraints, Keeping};
 pub use crowd::{Crowd, CrowdDescription, Listing, PAIR_MEMORY};
 pub use driven::{DRIVEN_PARAMETERS, DrivenLaw, Recipe, Wiring};
 pub use filling::{Filling, FillingError, Gap, Gaps};

@@ -1,6 +1,7 @@
 //! Networks become points with masses, and links of one law one force each.
 
 mod coincident;
+mod constraints;
 mod controls;
 mod ends;
 mod fill;
@@ -96,7 +97,7 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     let links = together(network, links);
     let is_between_masses = |ends: &&[u32; 2]| ends.iter().all(|end| (*end as usize) < masses);
     let nodes = links.iter().flat_map(|links| links.ends.iter().filter(is_between_masses).flatten().copied());
-    let nodes = nodes.collect();
+    let nodes = nodes.chain(constraints::rods(network, &points, draft)?.into_iter().flatten()).collect();
     let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
     mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
     let presented = network.presented.iter().map(|(name, _)| name);
@@ -215,6 +216,11 @@ pub fn add_forces(
         let name = crowd_force(crowd, index, &body.spec.name);
         if let Some(crowd) = self::crowd(name, crowd, body, network, (timestep, listing), draft) {
             forces.push(Box::new(crowd));
+        }
+    }
+    for index in 0..network.constraints.len() {
+        if let Some(constraints) = constraints::of(draft, body, network, index) {
+            forces.push(Box::new(constraints));
         }
     }
 }

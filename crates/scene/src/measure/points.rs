@@ -1,8 +1,9 @@
 //! Quantities at points.
 
-use souple_engine::{Configuration, World};
+use souple_engine::{Configuration, Force, World};
 use souple_math::Vec3;
 use souple_models::loads::Attachments;
+use souple_models::network::Constraints;
 
 use super::body::centre_of_mass;
 use super::contact::{Share, contact_forces, penetrations};
@@ -24,6 +25,7 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
         }
         PointQuantity::Reaction => reactions(part, world),
         PointQuantity::Torque => moments(&reactions(part, world), part, world),
+        PointQuantity::ConstraintForce => constraint_forces(part, world),
         PointQuantity::ContactForce => contact_forces(part, Share::Total, world),
         PointQuantity::NormalForce => contact_forces(part, Share::Normal, world),
         PointQuantity::FrictionForce => contact_forces(part, Share::Tangential, world),
@@ -39,6 +41,17 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
             return PointValues::Numbers(of_attachments(part, world, is_torn));
         }
     })
+}
+
+/// What constraints do to each row of the part, by the multipliers that were found last [N].
+fn constraint_forces(part: &Part, world: &World) -> Vec<Vec3> {
+    let mut forces = vec![Vec3::ZERO; world.rows(part.system).positions.len()];
+    world.visit_forces(part.system, &mut |force, at| {
+        if let Some(constraints) = force.as_any().downcast_ref::<Constraints>() {
+            constraints.add_force(at, &mut constraints.new_scratch(), &mut forces);
+        }
+    });
+    part.rows.iter().map(|row| forces[*row as usize]).collect()
 }
 
 /// Of each row of the part the greatest number of the springs that attach it; zero where none does.

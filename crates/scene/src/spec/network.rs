@@ -1,11 +1,13 @@
 //! Networks of masses and interactions: what stands for a body where matter is points and links.
 
+mod constraints;
 mod contours;
 mod fill;
 mod fusible;
 mod kept;
 mod objects;
 
+pub use constraints::{ConstraintKind, ConstraintSpec, Guided};
 pub use contours::{ContourSpec, Way};
 pub use fill::{FillSpec, Filled};
 pub use fusible::FusibleSpec;
@@ -106,6 +108,17 @@ pub(super) static MASSES: Keys = Keys::new(
     ],
 );
 
+// which masses are joined
+const CHAIN: Key = Key::new("chain", Shape::Boolean, "each mass of a group with the next");
+const LOOP: Key = Key::new("loop", Shape::Boolean, "the same, and the last with the first");
+const ALL: Key = Key::new("all", Shape::Boolean, "every pair");
+const PAIRED: Key =
+    Key::new("paired", Shape::Boolean, "each mass of a group with that of its number in the other");
+const REACH: Key =
+    Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at rest");
+const FROM: Key = Key::new("from", Shape::Integers, "first ends: numbers within the first group");
+const TO: Key = Key::new("to", Shape::Integers, "second ends: numbers within the last group");
+
 pub(super) static LINK_TABLE: Keys = Keys::new(
     "links",
     "links of one law: all that `chain`, `loop`, `all`, `paired`, `reach`, or `from` and `to` say, which is one of them",
@@ -117,13 +130,13 @@ pub(super) static LINK_TABLE: Keys = Keys::new(
             Shape::Texts,
             "the group, or the two, whose masses they join; all masses where left out; a part or a port stands for its masses",
         ),
-        Key::new("chain", Shape::Boolean, "each mass of a group with the next"),
-        Key::new("loop", Shape::Boolean, "the same, and the last with the first"),
-        Key::new("all", Shape::Boolean, "every pair"),
-        Key::new("paired", Shape::Boolean, "each mass of a group with that of its number in the other"),
-        Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at rest"),
-        Key::new("from", Shape::Integers, "first ends: numbers within the first group"),
-        Key::new("to", Shape::Integers, "second ends: numbers within the last group"),
+        CHAIN,
+        LOOP,
+        ALL,
+        PAIRED,
+        REACH,
+        FROM,
+        TO,
         Key::number(
             "rest_length",
             "m",
@@ -205,6 +218,11 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers"),
         Key::new("links", Shape::Tables(&LINK_TABLE), "what acts between masses"),
         Key::new("crowds", Shape::Tables(&CROWD), "what acts between masses wherever they come near"),
+        Key::new(
+            "constraints",
+            Shape::Tables(&constraints::CONSTRAINT),
+            "geometric relations of masses, kept by forces that are solved for",
+        ),
         Key::new("objects", Shape::Named(&objects::OBJECT), "groups of masses as layers of things"),
         Key::new(
             "encounters",
@@ -248,6 +266,7 @@ pub struct Network {
     pub masses: Vec<MassGroup>,
     pub links: Vec<LinkTable>,
     pub crowds: Vec<CrowdSpec>,
+    pub constraints: Vec<ConstraintSpec>,
     /// Numbers of the masses of parts and ports.
     pub presented: Vec<(String, std::ops::Range<u32>)>,
     pub controls: Vec<ControlSpec>,
@@ -368,6 +387,7 @@ impl Network {
             masses,
             links,
             crowds,
+            constraints: reader.tables("constraints").iter().map(ConstraintSpec::read).collect(),
             presented,
             views,
             controls: reader
@@ -392,6 +412,11 @@ impl Network {
                 reader.log().add(Code::Conflict, &crowd.site, message, "space = \"physical\"");
             }
         }
+        for constraint in network.constraints.iter().filter(|_| network.space == Space::Algorithmic) {
+            let message = "`constraints` are in SI units, and the network counts time in steps";
+            reader.log().add(Code::Conflict, &constraint.site, message, "space = \"physical\"");
+        }
+        network.check_constraints(reader);
         network.check_contours(reader);
         network.check_count(reader);
         let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
@@ -462,6 +487,20 @@ impl Network {
             let expected = format!("at most {MASSES_MAX:.0e} masses in all groups together");
             (format!("the network has {count} masses"), expected)
         })
+    }
+
+    fn check_constraints(&self, reader: &Reader) {
+        let groups = self.masses.iter().map(|group| group.name.as_str());
+        let known: Vec<&str> = groups.chain(self.presented.iter().map(|(name, _)| name.as_str())).collect();
+        for (constraint, name) in
+            self.constraints.iter().flat_map(|it| it.of.iter().map(move |name| (it, name)))
+        {
+            if !known.contains(&name.as_str()) {
+                let hint = crate::keys::did_you_mean(name, known.iter().copied());
+                let message = format!("there is no group of masses `{name}`{hint}");
+                reader.log().add(Code::UnknownName, &constraint.site, message, crate::keys::one_of(&known));
+            }
+        }
     }
 
     fn check_contours(&self, reader: &Reader) {
@@ -647,17 +686,14 @@ impl Places {
     }
 }
 
-impl LinkTable {
-    pub(super) fn read(reader: &Reader) -> Self {
-        let of = reader.texts("of");
+impl Join {
+    /// Which of the keys that join masses of the groups `of` is written; `whole` is blamed where none is.
+    fn read(reader: &Reader, of: &[String], whole: &Site) -> Option<Self> {
         let refuse = |key: &str, message: &str, expected: &str| {
             reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
         };
-        if of.len() > 2 {
-            refuse("of", "a link has two ends", "one group or two");
-        }
         let written = reader.written(&["chain", "loop", "all", "paired", "reach", "from", "to"]);
-        let join = match written[..] {
+        match written[..] {
             [key @ ("chain" | "loop")] if of.len() == 2 => {
                 refuse(key, "a chain is of one group", "one group in `of`");
                 None
@@ -688,10 +724,24 @@ impl LinkTable {
             }
             _ => {
                 let message = format!("links join masses in one way, these say {}", written.join(" and "));
-                refuse("law", &message, "one of chain, loop, all, paired, reach, or from and to");
+                let expected = "one of chain, loop, all, paired, reach, or from and to";
+                reader.log().add(Code::Conflict, whole, message, expected);
                 None
             }
+        }
+    }
+}
+
+impl LinkTable {
+    pub(super) fn read(reader: &Reader) -> Self {
+        let of = reader.texts("of");
+        let refuse = |key: &str, message: &str, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
         };
+        if of.len() > 2 {
+            refuse("of", "a link has two ends", "one group or two");
+        }
+        let join = Join::read(reader, &of, &reader.site_of("law"));
         let axis = reader.maybe_vector("along").map(Vec3::try_normalised);
         if axis == Some(None) {
             refuse("along", "an axis of no length", "a vector that is not zero, such as [0, 0, 1]");

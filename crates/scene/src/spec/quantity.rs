@@ -142,6 +142,7 @@ pub enum PointQuantity {
     Velocity,
     Reaction,
     Torque,
+    ConstraintForce,
     ContactForce,
     NormalForce,
     FrictionForce,
@@ -337,6 +338,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "moment of the reactions on the body, about the key `about` or its centre of mass",
         MECHANICS,
         points("N m", Vector, Sum, PointQuantity::Torque),
+    ),
+    &entry(
+        "constraint_force",
+        "force of the constraints of networks on their masses",
+        MECHANICS,
+        points("N", Vector, Sum, PointQuantity::ConstraintForce),
     ),
     &entry(
         "bone.force",

@@ -7,7 +7,7 @@ use souple_math::Vec3;
 use souple_mesh::MeshSize;
 
 use super::super::memory;
-use crate::diagnostic::{Code, Log};
+use crate::diagnostic::{Code, Log, Site};
 use crate::spec::network::{Join, LinkTable, Network};
 
 /// Numbers of the masses of two groups, the same where there is one; all masses where none is named. `None` for an
@@ -46,16 +46,27 @@ pub fn of_table(
     most: usize,
     log: &Log,
 ) -> Option<Vec<[u32; 2]>> {
-    let (first, last) = groups(&table.of, network)?;
+    joined((table.join.as_ref()?, &table.of, &table.site), network, points, most, log)
+}
+
+/// The masses of groups that are joined in a way, likewise; what is refused is so at the site.
+pub fn joined(
+    (join, of, site): (&Join, &[String], &Site),
+    network: &Network,
+    points: &[Vec3],
+    most: usize,
+    log: &Log,
+) -> Option<Vec<[u32; 2]>> {
+    let (first, last) = groups(of, network)?;
     let too_many = |links: String, expected: &str| {
         let message = format!("{links}, and memory holds no more than {most}");
-        log.add(Code::TooLarge, &table.site, message, expected);
+        log.add(Code::TooLarge, site, message, expected);
     };
-    let mut ends: Vec<[u32; 2]> = match table.join.as_ref()? {
+    let mut ends: Vec<[u32; 2]> = match join {
         Join::Chain => first.clone().zip(first.skip(1)).map(|(a, b)| [a, b]).collect(),
         Join::Loop if first.len() < 3 => {
             let message = format!("a loop of {} masses", first.len());
-            log.add(Code::Conflict, &table.site, message, "at least three masses, or a chain");
+            log.add(Code::Conflict, site, message, "at least three masses, or a chain");
             return None;
         }
         Join::Loop => {
@@ -64,7 +75,7 @@ pub fn of_table(
         }
         Join::Paired if first.len() != last.len() || first == last => {
             let message = format!("groups of {} and {} masses are no pairs", first.len(), last.len());
-            log.add(Code::Conflict, &table.site, message, "two groups of as many masses");
+            log.add(Code::Conflict, site, message, "two groups of as many masses");
             return None;
         }
         Join::Paired => first.zip(last).map(|(a, b)| [a, b]).collect(),
@@ -85,10 +96,10 @@ pub fn of_table(
                 return None;
             }
         },
-        Join::Ends(from, to) => listed(table, [from, to], [&first, &last], log)?,
+        Join::Ends(from, to) => listed(site, [from, to], [&first, &last], log)?,
     };
     if ends.is_empty() {
-        log.add(Code::EmptyRegion, &table.site, "no masses are joined", "a longer reach, or other groups");
+        log.add(Code::EmptyRegion, site, "no masses are joined", "a longer reach, or other groups");
         return None;
     }
     ends.shrink_to_fit();
@@ -97,7 +108,7 @@ pub fn of_table(
 
 /// Links that are written one by one; `None` where one was refused.
 fn listed(
-    table: &LinkTable,
+    site: &Site,
     [from, to]: [&[u32]; 2],
     [first, last]: [&Range<u32>; 2],
     log: &Log,
@@ -108,14 +119,14 @@ fn listed(
             if *number as usize >= group.len() {
                 let message = format!("{key}[{index}] is mass {number}, but the group has {}", group.len());
                 let expected = format!("numbers below {}", group.len());
-                log.add(Code::OutOfRange, &table.site, message, expected);
+                log.add(Code::OutOfRange, site, message, expected);
                 return None;
             }
         }
         let pair = [first.start + a, last.start + b];
         if pair[0] == pair[1] {
             let message = format!("link {index} joins mass {a} to itself");
-            log.add(Code::Conflict, &table.site, message, "two masses for the two ends of a link");
+            log.add(Code::Conflict, site, message, "two masses for the two ends of a link");
             return None;
         }
         ends.push(pair);

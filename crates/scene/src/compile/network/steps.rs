@@ -10,7 +10,7 @@ use souple_engine::Force;
 use souple_engine::steppers::Stability;
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_models::network::{Crowd, Links};
+use souple_models::network::{Constraints, Crowd, Links};
 
 use super::super::Draft;
 use super::super::bodies::Placed;
@@ -69,7 +69,8 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
     let spec = &draft.spec.systems[body.system];
     let timestep = system.stepper.interval(draft.spec.world.period / f64::from(spec.steps_per_period));
     let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
-    let loads = of_links(draft, body, &is_fixed);
+    let mut loads = of_links(draft, body, &is_fixed);
+    add_constraints(draft, body, timestep, &mut loads);
     let crowds = crowds_of(draft, body, &is_fixed);
     let most = TOUCHING[free_axes(draft, body, network)];
     let places = places(body, &crowds, most);
@@ -120,6 +121,21 @@ fn of_links(draft: &Draft, body: &Placed, is_fixed: &[bool]) -> Vec<f64> {
         }
     }
     loads
+}
+
+/// Adds what constraints of augmented Lagrangians take of the bound at each mass [N/m]; those that are kept exactly take none.
+fn add_constraints(draft: &Draft, body: &Placed, timestep: f64, loads: &mut [f64]) {
+    let places = body.mesh.points.iter().copied();
+    let positions: Vec<Vec3> = std::iter::repeat_n(Vec3::ZERO, body.rows.start).chain(places).collect();
+    let forces = draft.systems[body.system].forces.iter();
+    for constraints in forces.filter_map(|force| force.as_any().downcast_ref::<Constraints>()) {
+        let is_here = |row: &u32| body.rows.contains(&(*row as usize));
+        if constraints.relations().iter().all(|relation| relation.rows().iter().all(is_here)) {
+            constraints.visit_loads(&positions, timestep, &mut |row, load| {
+                loads[row as usize - body.rows.start] += load;
+            });
+        }
+    }
 }
 
 fn crowds_of<'a>(draft: &'a Draft, body: &Placed, is_fixed: &[bool]) -> Vec<Peopled<'a>> {

@@ -1,0 +1,269 @@
+//! Constraints between masses: relations that are kept by forces.
+//!
+//! Kept exactly, the forces are those that lead a relation back as a critically damped oscillator of the time `τ` would,
+//! `D'' + (2/τ) D' + D/τ² = 0` (Barzel & Barr 1988): its exact solution is `D_{n+1} = 2 r D_n − r² D_{n−1}` with `r = e^{−h/τ}`, and that is
+//! what a step is told to end at ([`souple_engine::binding`]). What holds stays, at any step; with `τ = 0` what does not hold does after one.
+//!
+//! By the augmented Lagrangian (Platt & Barr 1988) they are `−Jᵀ (λ + c g + z ġ)` with `λ' = k g`: an ordinary force, for any stepper, that
+//! keeps the relation in the end only. A mass on such a spring is stable where `z c > k m`, with its own mass `m` and `z` from whatever damps it.
+
+use std::any::Any;
+
+use souple_engine::binding::{self, Binding};
+use souple_engine::tangent::add_block;
+use souple_engine::{
+    Configuration, Declaration, Energy, Force, LinkShown, LinkState, Pair, Scratch, TangentWeights,
+};
+use souple_math::{Mat3, Vec3};
+use souple_solve::BlockMatrix;
+
+use super::relations::Relation;
+
+/// How relations are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Keeping {
+    /// By forces that the step solves for, approached within the time `τ` [s].
+    Exact {
+        time: f64,
+    },
+    Augmented(Augmented),
+}
+
+/// In units that make each a force when it is multiplied with `g` [m], [m²], [m³] and its gradient.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Augmented {
+    /// `c`, per metre.
+    pub stiffness: f64,
+    /// `z`, per metre and second.
+    pub damping: f64,
+    /// `k`, per metre, by which the multiplier grows in a second.
+    pub rate: f64,
+}
+
+/// Relations of one kind, kept alike.
+#[derive(Debug)]
+pub struct Constraints {
+    name: String,
+    relations: Vec<Box<dyn Relation>>,
+    keeping: Keeping,
+}
+
+impl Constraints {
+    pub fn new(name: impl Into<String>, relations: Vec<Box<dyn Relation>>, keeping: Keeping) -> Self {
+        Self { name: name.into(), relations, keeping }
+    }
+
+    pub fn relations(&self) -> &[Box<dyn Relation>] {
+        &self.relations
+    }
+
+    /// The multipliers of a relation, in the units of its components: what pushes its masses along its gradients. By the augmented
+    /// Lagrangian the whole of what does.
+    pub fn multiplier(&self, relation: usize, at: &Configuration) -> Vec3 {
+        let kept = binding::multiplier(at.memory, relation);
+        let Keeping::Augmented(Augmented { stiffness, damping, .. }) = self.keeping else { return kept };
+        let relation = &self.relations[relation];
+        let rate = if damping > 0.0 { rate(&**relation, at) } else { Vec3::ZERO };
+        -(kept + relation.value(at.positions, at.time) * stiffness + rate * damping)
+    }
+
+    /// What it takes of the stiffness that an explicit step bears at each row, `Σ (c + 2 z/h) |J_i| Σ_j |J_j|` by Gershgorin's theorem [N/m].
+    pub fn visit_loads(&self, positions: &[Vec3], timestep: f64, visit: &mut dyn FnMut(u32, f64)) {
+        let Keeping::Augmented(Augmented { stiffness, damping, .. }) = self.keeping else { return };
+        let mut gradients = Vec::new();
+        for relation in &self.relations {
+            gradients.clear();
+            relation.add_gradients(positions, 0.0, &mut gradients);
+            for component in 0..3 {
+                let slope = |gradient: &Mat3| gradient.row(component).length();
+                let all: f64 = gradients.iter().map(slope).sum();
+                for (row, gradient) in relation.rows().iter().zip(&gradients) {
+                    visit(*row, (stiffness + 2.0 * damping / timestep) * slope(gradient) * all);
+                }
+            }
+        }
+    }
+
+    /// Calls `visit(rows, gradients)` for each relation of an augmented Lagrangian.
+    fn for_augmented(&self, at: &Configuration, mut visit: impl FnMut(&Augmented, &[u32], &[Mat3])) {
+        let Keeping::Augmented(augmented) = &self.keeping else { return };
+        let mut gradients = Vec::new();
+        for relation in &self.relations {
+            gradients.clear();
+            relation.add_gradients(at.positions, at.time, &mut gradients);
+            visit(augmented, relation.rows(), &gradients);
+        }
+    }
+}
+
+/// `ġ` of the masses, as they move.
+fn rate(relation: &dyn Relation, at: &Configuration) -> Vec3 {
+    let mut gradients = Vec::new();
+    relation.add_gradients(at.positions, at.time, &mut gradients);
+    let rows = relation.rows().iter().zip(&gradients);
+    rows.map(|(row, gradient)| *gradient * at.velocities[*row as usize]).sum()
+}
+
+impl Binding for Constraints {
+    fn relation_count(&self) -> usize {
+        self.relations.len()
+    }
+
+    fn rows(&self, relation: usize) -> &[u32] {
+        self.relations[relation].rows()
+    }
+
+    fn value(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3 {
+        self.relations[relation].value(positions, time)
+    }
+
+    fn add_gradients(&self, relation: usize, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>) {
+        self.relations[relation].add_gradients(positions, time, gradients);
+    }
+
+    fn wanted(&self, relation: usize, [before, now]: [Vec3; 2], start: f64, timestep: f64) -> Vec3 {
+        if let Some(second_rate) = self.relations[relation].second_rate(start) {
+            return now * 2.0 - before + second_rate * (timestep * timestep);
+        }
+        let Keeping::Exact { time } = self.keeping else { return Vec3::ZERO };
+        let ratio = if time > 0.0 { (-timestep / time).exp() } else { 0.0 };
+        now * (2.0 * ratio) - before * (ratio * ratio)
+    }
+
+    fn describe(&self, relation: usize) -> String {
+        let it = &self.relations[relation];
+        format!("{} (number {relation})", it.describe())
+    }
+}
+
+impl Force for Constraints {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn declaration(&self) -> Declaration {
+        let is_damped =
+            matches!(self.keeping, Keeping::Augmented(Augmented { damping, .. }) if damping > 0.0);
+        Declaration {
+            conservative: false,
+            velocity_terms: is_damped,
+            symmetric_tangent: true,
+            internal: false,
+            changing_pattern: false,
+        }
+    }
+
+    // what the multipliers add by the second derivatives of relations
+    fn leaves_out_stress(&self) -> bool {
+        true
+    }
+
+    fn memory_len(&self) -> usize {
+        binding::memory_len(self.relations.len())
+    }
+
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
+    // E = Σ ½ c g²
+    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
+        let stored = match self.keeping {
+            Keeping::Exact { .. } => 0.0,
+            Keeping::Augmented(Augmented { stiffness, .. }) => {
+                let values = self.relations.iter().map(|relation| relation.value(at.positions, at.time));
+                values.map(|g| 0.5 * stiffness * g.length_sq()).sum()
+            }
+        };
+        // what multipliers do to masses comes from nowhere else
+        Energy { stored, dissipated: -at.memory[0] }
+    }
+
+    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
+        if self.binding().is_some() {
+            binding::add_forces(self, at, out);
+            return;
+        }
+        let mut gradients = Vec::new();
+        for (index, relation) in self.relations.iter().enumerate() {
+            let multiplier = self.multiplier(index, at);
+            gradients.clear();
+            relation.add_gradients(at.positions, at.time, &mut gradients);
+            for (row, gradient) in relation.rows().iter().zip(&gradients) {
+                out[*row as usize] += gradient.transpose_apply(multiplier);
+            }
+        }
+    }
+
+    // −Jᵀ (a c + b z) J δ
+    fn add_differential(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        _scratch: &mut Scratch,
+        out: &mut [Vec3],
+    ) {
+        self.for_augmented(at, |Augmented { stiffness, damping, .. }, rows, gradients| {
+            let rows = || rows.iter().zip(gradients);
+            let change: Vec3 = rows().map(|(row, gradient)| *gradient * delta[*row as usize]).sum();
+            let push = change * -(weights.position * stiffness + weights.velocity * damping);
+            for (row, gradient) in rows() {
+                out[*row as usize] += gradient.transpose_apply(push);
+            }
+        });
+    }
+
+    fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
+        self.relations.iter().for_each(|relation| visit(relation.rows()));
+    }
+
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.for_augmented(at, |Augmented { stiffness, damping, .. }, rows, gradients| {
+            let scale = -(weights.position * stiffness + weights.velocity * damping);
+            for (row, of_row) in rows.iter().zip(gradients) {
+                for (column, of_column) in rows.iter().zip(gradients) {
+                    let block = of_row.transpose_mul(of_column) * scale;
+                    add_block(matrix, *row as usize, *column as usize, &block);
+                }
+            }
+        });
+    }
+
+    // λ' = k g; the work of λ and of the damper
+    fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
+        let Keeping::Augmented(Augmented { damping, rate: growth, .. }) = self.keeping else { return };
+        for (index, relation) in self.relations.iter().enumerate() {
+            let (rate, kept) = (rate(&**relation, at), binding::multiplier(at.memory, index));
+            memory[0] -= timestep * (kept + rate * damping).dot(rate);
+            let grown = kept + relation.value(at.positions, at.time) * (growth * timestep);
+            binding::set_multiplier(memory, index, grown);
+        }
+    }
+
+    fn binding(&self) -> Option<&dyn Binding> {
+        matches!(self.keeping, Keeping::Exact { .. }).then_some(self as &dyn Binding)
+    }
+
+    fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
+        for (index, relation) in self.relations.iter().enumerate() {
+            if let Some(ends) = relation.ends() {
+                visit(&LinkShown { ends, state: LinkState::In(0), push: self.multiplier(index, at).x });
+            }
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        self.relations.iter().map(|relation| size_of_val(&**relation) + 4 * relation.rows().len()).sum()
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}

@@ -1,0 +1,126 @@
+//! Geometric relations between masses: one file for each kind. What keeps them is in [`super::constraints`].
+
+mod acceleration;
+mod enclosed;
+mod guide;
+mod joint;
+mod rod;
+mod surface;
+
+pub use acceleration::Acceleration;
+pub use enclosed::{Area, Volume};
+pub use guide::Guide;
+pub use joint::Joint;
+pub use rod::Rod;
+pub use surface::Surface;
+
+use std::fmt::Debug;
+
+use souple_math::{Mat3, Vec3};
+
+/// `g(x, t)` of some masses, which is to vanish; of up to three components, of which the others are zero.
+///
+/// Rows are numbers of the system's rows, and positions those of all of them.
+pub trait Relation: Send + Sync + Debug {
+    /// The rows that it is of, each once.
+    fn rows(&self) -> &[u32];
+
+    fn value(&self, positions: &[Vec3], time: f64) -> Vec3;
+
+    /// `∂g/∂x` for each row in turn: the gradient of a component in each row of the matrix.
+    fn add_gradients(&self, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
+
+    /// What `g` changes by the second time in each component, where that is told instead of `g` itself [1/s²].
+    fn second_rate(&self, _time: f64) -> Option<Vec3> {
+        None
+    }
+
+    /// The two masses that it is a line between, for pictures.
+    fn ends(&self) -> Option<[u32; 2]> {
+        None
+    }
+
+    /// What it is, in words that begin with what keeps it.
+    fn describe(&self) -> String;
+}
+
+/// A gradient of the first component alone.
+fn first_row(gradient: Vec3) -> Mat3 {
+    Mat3::from_columns(gradient, Vec3::ZERO, Vec3::ZERO).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use souple_formal::Formula;
+
+    use super::*;
+    use crate::loads::FormulaVector;
+
+    const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
+
+    fn all(positions: &[Vec3]) -> Vec<Box<dyn Relation>> {
+        let formula = |text: &str| Formula::compile(text, &VARIABLES).unwrap();
+        let part = || Formula::compile("1 + t", &["t"]).unwrap();
+        let told = Arc::new(FormulaVector::compile("[t, 2, 3]").unwrap());
+        vec![
+            Box::new(Rod { ends: [0, 2], length: 0.7 }),
+            Box::new(Joint { ends: [1, 3] }),
+            Box::new(Guide::nail(1, Vec3::X)),
+            Box::new(Guide::line(2, Vec3::Y, Vec3::new(1.0, -2.0, 0.5)).unwrap()),
+            Box::new(Guide::plane(3, Vec3::Z, Vec3::new(0.3, 1.0, 2.0)).unwrap()),
+            Box::new(Surface { row: [1], zeros: [formula("x^2 + y * z - t"), formula("sin(x) + z")].into() }),
+            Box::new(Acceleration {
+                row: [2],
+                axes: Vec3::new(1.0, 0.0, 1.0),
+                start: Vec3::ZERO,
+                value: told,
+            }),
+            Box::new(Area { rows: vec![0, 1, 2, 3], normal: Vec3::Z, area: 0.5, part: part() }),
+            Box::new(Volume::new(&[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], part(), positions)),
+        ]
+    }
+
+    /// Gradients are the derivatives of values, row by row and component by component.
+    #[test]
+    fn gradients_are_derivatives() {
+        let positions = [
+            Vec3::new(0.1, 0.2, -0.1),
+            Vec3::new(1.1, 0.0, 0.2),
+            Vec3::new(0.2, 0.9, 0.1),
+            Vec3::new(0.3, 0.4, 1.2),
+        ];
+        let (time, step) = (0.4, 1e-5);
+        for relation in all(&positions) {
+            let mut gradients = Vec::new();
+            relation.add_gradients(&positions, time, &mut gradients);
+            assert_eq!(gradients.len(), relation.rows().len(), "{}", relation.describe());
+            for (row, gradient) in relation.rows().iter().zip(&gradients) {
+                for axis in 0..3 {
+                    let at = |by: f64| {
+                        let mut moved = positions;
+                        moved[*row as usize][axis] += by;
+                        relation.value(&moved, time)
+                    };
+                    let difference = (at(step) - at(-step)) / (2.0 * step);
+                    // differences are off by step²/6 of third derivatives of the order of one, and by rounding over the step
+                    let off = (difference - *gradient * Vec3::AXES[axis]).length();
+                    assert!(off < 1e-9, "{} by {row} along {axis}: {off}", relation.describe());
+                }
+            }
+        }
+    }
+
+    /// Where nothing is told of what is kept, motion of the whole changes no rod, joint, area or volume.
+    #[test]
+    fn what_is_between_masses_does_not_see_them_move_together() {
+        let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        let moved = positions.map(|x| x + Vec3::new(100.0, -50.0, 30.0));
+        for relation in [0, 1, 7, 8].map(|index| all(&positions).swap_remove(index)) {
+            let off = (relation.value(&positions, 0.0) - relation.value(&moved, 0.0)).length();
+            // places are known to 1e-14
+            assert!(off < 1e-13, "{}: {off}", relation.describe());
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Constraints of networks become relations between rows.
+
+use std::sync::Arc;
+
+use souple_engine::Motion;
+use souple_formal::Formula;
+use souple_math::Vec3;
+use souple_models::loads::FormulaVector;
+use souple_models::network::relations::{Acceleration, Area, Guide, Joint, Relation, Rod, Surface, Volume};
+use souple_models::network::{Constraints, Keeping};
+
+use super::super::bodies::Placed;
+use super::super::{Draft, memory, motion, start};
+use super::ends;
+use crate::diagnostic::Code;
+use crate::spec::network::{ConstraintKind, ConstraintSpec, Guided, Join, Network};
+
+/// Of what a relation changes by when its masses move by their greatest coordinate: what is off by more at the start does not hold.
+const HOLDS: f64 = 1e-9;
+
+/// A constraint that is being made.
+struct Making<'a> {
+    draft: &'a Draft<'a>,
+    body: &'a Placed<'a>,
+    network: &'a Network,
+    spec: &'a ConstraintSpec,
+}
+
+/// The force of a constraint of this number; `None` where it was refused.
+pub fn of(draft: &Draft, body: &Placed, network: &Network, index: usize) -> Option<Constraints> {
+    let spec = &network.constraints[index];
+    let making = Making { draft, body, network, spec };
+    let relations = making.relations(spec.kind.as_ref()?)?;
+    let name = match &spec.name[..] {
+        "" => format!("{}.constraints[{index}]", body.spec.name),
+        name => format!("{}.{name}", body.spec.name),
+    };
+    let keeping = spec.augmented.map_or(Keeping::Exact { time: spec.time }, Keeping::Augmented);
+    let constraints = Constraints::new(name, relations, keeping);
+    making.check_start(&constraints, keeping)?;
+    Some(constraints)
+}
+
+/// The ends of all rods, in the order of constraints; `None` where some were refused.
+pub fn rods(network: &Network, points: &[Vec3], draft: &Draft) -> Option<Vec<[u32; 2]>> {
+    let mut rods = Vec::new();
+    for spec in &network.constraints {
+        if let Some(ConstraintKind::Rod(join, _)) = &spec.kind {
+            let of = (join, &spec.of[..], &spec.kind_site);
+            rods.extend(ends::joined(of, network, points, memory::links_that_fit(), draft.log)?);
+        }
+    }
+    let masses = points.len() as u32;
+    rods.retain(|ends| ends.iter().all(|end| *end < masses));
+    Some(rods)
+}
+
+impl Making<'_> {
+    fn refuse<T>(&self, code: Code, message: String, expected: &str) -> Option<T> {
+        self.draft.log.add(code, &self.spec.kind_site, message, expected);
+        None
+    }
+
+    fn row(&self, mass: u32) -> u32 {
+        self.body.rows.start as u32 + mass
+    }
+
+    fn place(&self, mass: u32) -> Vec3 {
+        self.body.mesh.points[mass as usize]
+    }
+
+    fn relations(&self, kind: &ConstraintKind) -> Option<Vec<Box<dyn Relation>>> {
+        match kind {
+            ConstraintKind::Rod(join, length) => {
+                let rod = |[a, b]: [u32; 2]| {
+                    let length = length.unwrap_or_else(|| (self.place(a) - self.place(b)).length());
+                    if length > 0.0 {
+                        return Some(Rod { ends: [self.row(a), self.row(b)], length });
+                    }
+                    let message = format!("masses {a} and {b} rest at one place, and a rod has a length");
+                    self.refuse(Code::Conflict, message, "masses that are apart, a `length`, or a `joint`")
+                };
+                self.of_pairs(join, rod)
+            }
+            ConstraintKind::Joint(join) => {
+                self.of_pairs(join, |[a, b]| Some(Joint { ends: [self.row(a), self.row(b)] }))
+            }
+            ConstraintKind::Nail(guided) => self.guided(guided, |row, place| Some(Guide::nail(row, place))),
+            ConstraintKind::Line(guided, direction) => {
+                self.guided(guided, |row, place| Guide::line(row, place, *direction))
+            }
+            ConstraintKind::Plane(guided, normal) => {
+                self.guided(guided, |row, place| Guide::plane(row, place, *normal))
+            }
+            ConstraintKind::Surface(zeros) => {
+                let zeros: Arc<[Formula]> = zeros.as_slice().into();
+                self.of_each(|mass| Some(Surface { row: [self.row(mass)], zeros: Arc::clone(&zeros) }))
+            }
+            ConstraintKind::Acceleration(formulas, axes) => {
+                let value = Arc::new(FormulaVector::from_components(formulas.clone()));
+                let axes = Vec3::from_array(axes.map(|is_told| if is_told { 1.0 } else { 0.0 }));
+                self.of_each(|mass| {
+                    let (row, start) = ([self.row(mass)], self.place(mass));
+                    Some(Acceleration { row, axes, start, value: Arc::clone(&value) })
+                })
+            }
+            ConstraintKind::Area(normal, part) => self.area(*normal, part),
+            ConstraintKind::Volume(triangles, part) => self.volume(triangles, part),
+        }
+    }
+
+    fn of_pairs<R: Relation + 'static>(
+        &self,
+        join: &Join,
+        relation: impl Fn([u32; 2]) -> Option<R>,
+    ) -> Option<Vec<Box<dyn Relation>>> {
+        let (points, most) = (&self.body.mesh.points, memory::links_that_fit());
+        let of = (join, &self.spec.of[..], &self.spec.kind_site);
+        let pairs = ends::joined(of, self.network, points, most, self.draft.log)?;
+        let masses = points.len() as u32;
+        if pairs.iter().flatten().any(|end| *end >= masses) {
+            let message = "constraints are between masses, and points of view are none".to_owned();
+            return self.refuse(Code::Conflict, message, "groups, parts or ports");
+        }
+        pairs.into_iter().map(|pair| relation(pair).map(|relation| Box::new(relation) as _)).collect()
+    }
+
+    /// Masses of the groups, in the order of these.
+    fn masses(&self) -> Vec<u32> {
+        let masses = self.body.mesh.points.len() as u32;
+        if self.spec.of.is_empty() {
+            return (0..masses).collect();
+        }
+        let groups = self.spec.of.iter().filter_map(|name| self.network.numbers_of(name));
+        groups.flatten().filter(|mass| *mass < masses).collect()
+    }
+
+    fn of_each<R: Relation + 'static>(
+        &self,
+        relation: impl Fn(u32) -> Option<R>,
+    ) -> Option<Vec<Box<dyn Relation>>> {
+        self.masses().into_iter().map(|mass| relation(mass).map(|relation| Box::new(relation) as _)).collect()
+    }
+
+    fn guided(
+        &self,
+        guided: &Guided,
+        guide: impl Fn(u32, Vec3) -> Option<Guide>,
+    ) -> Option<Vec<Box<dyn Relation>>> {
+        let motion: Option<Arc<dyn Motion>> =
+            motion::motion(self.draft.log, guided.motion.as_ref(), &self.spec.kind_site)?;
+        self.of_each(|mass| {
+            let place = guided.place.unwrap_or_else(|| self.place(mass));
+            Some(Guide { motion: motion.clone(), ..guide(self.row(mass), place)? })
+        })
+    }
+
+    fn area(&self, normal: Vec3, part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
+        let masses = self.masses();
+        if masses.len() < 3 {
+            let message = format!("a line through {} masses encloses nothing", masses.len());
+            return self.refuse(Code::Conflict, message, "at least three masses");
+        }
+        let rows = masses.iter().map(|mass| self.row(*mass)).collect();
+        let mut area = Area { rows, normal, area: 0.0, part: part.clone() };
+        area.area = area.enclosed(&self.rows_at(&self.body.mesh.points));
+        if area.area == 0.0 || !area.area.is_finite() {
+            let message = format!("the masses enclose {} m² at rest, seen against the normal", area.area);
+            return self.refuse(
+                Code::Conflict,
+                message,
+                "another `normal`, or masses that enclose something",
+            );
+        }
+        Some(vec![Box::new(area)])
+    }
+
+    fn volume(&self, triangles: &[[u32; 3]], part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
+        let masses = self.masses();
+        let mut of_rows = Vec::with_capacity(triangles.len());
+        for (index, corners) in triangles.iter().enumerate() {
+            if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= masses.len()) {
+                let message =
+                    format!("triangles[{index}] is of mass {wrong}, and there are {}", masses.len());
+                return self.refuse(Code::OutOfRange, message, &format!("numbers below {}", masses.len()));
+            }
+            of_rows.push(corners.map(|corner| self.row(masses[corner as usize])));
+        }
+        let points = self.rows_at(&self.body.mesh.points);
+        let volume = Volume::new(&of_rows, part.clone(), &points);
+        let enclosed = volume.enclosed(&points);
+        if !(enclosed > 0.0 && enclosed.is_finite()) {
+            let message = format!("the triangles enclose {enclosed} m³ at rest");
+            return self.refuse(
+                Code::Conflict,
+                message,
+                "triangles that enclose something, counterclockwise seen from outside",
+            );
+        }
+        Some(vec![Box::new(volume)])
+    }
+
+    /// Masses among the rows of their system.
+    fn rows_at(&self, masses: &[Vec3]) -> Vec<Vec3> {
+        std::iter::repeat_n(Vec3::ZERO, self.body.rows.start).chain(masses.iter().copied()).collect()
+    }
+
+    /// What is kept at once, and exactly, holds at the start.
+    fn check_start(&self, constraints: &Constraints, keeping: Keeping) -> Option<()> {
+        let points = start::places(self.body.spec.start.as_ref(), &self.body.mesh.points);
+        let scale =
+            points.iter().flat_map(|point| point.to_array()).fold(0.0_f64, |most, x| most.max(x.abs()));
+        let positions = self.rows_at(&points);
+        let mut gradients = Vec::new();
+        for relation in constraints.relations() {
+            let value = relation.value(&positions, 0.0);
+            gradients.clear();
+            relation.add_gradients(&positions, 0.0, &mut gradients);
+            let told = relation.second_rate(0.0);
+            let is_finite = value.is_finite() && told.is_none_or(Vec3::is_finite);
+            if !(is_finite && gradients.iter().all(|gradient| gradient.is_finite())) {
+                let message = format!("at the start there is no value of {}", relation.describe());
+                return self.refuse(Code::NotFinite, message, "formulas that have one where masses start");
+            }
+            for component in 0..3 {
+                let slope: f64 = gradients.iter().map(|gradient| gradient.row(component).length()).sum();
+                let off = value[component].abs();
+                if told.is_some() || off <= HOLDS * slope * scale {
+                    continue;
+                }
+                if slope == 0.0 {
+                    let message = format!(
+                        "{} is off by {off:.3e} at the start, where no direction leads to it",
+                        relation.describe()
+                    );
+                    return self.refuse(Code::Conflict, message, "masses that start elsewhere");
+                }
+                if keeping == (Keeping::Exact { time: 0.0 }) {
+                    let message = format!(
+                        "{} is off by {off:.3e} at the start, and would be put right within a step",
+                        relation.describe()
+                    );
+                    return self.refuse(
+                        Code::Conflict,
+                        message,
+                        "masses that start where it holds, or a `time`",
+                    );
+                }
+            }
+        }
+        Some(())
+    }
+}

@@ -1,0 +1,333 @@
+//! Constraints between masses: geometric relations that forces keep.
+
+use souple_formal::Formula;
+use souple_math::Vec3;
+use souple_models::network::Augmented;
+use souple_table::{Range, Value};
+
+use super::Join;
+use crate::diagnostic::{Code, Site};
+use crate::keys::{Key, Keys, Shape};
+use crate::reader::Reader;
+use crate::spec::boundary::{LOAD_VARIABLES, MOTION, MotionSpec};
+
+static ROD: Keys = Keys::new(
+    "constraint_rod",
+    "pairs of masses at one distance: all that `chain`, `loop`, `all`, `paired`, `reach`, or `from` and `to` say, which is one of them",
+    &[
+        super::CHAIN,
+        super::LOOP,
+        super::ALL,
+        super::PAIRED,
+        super::REACH,
+        super::FROM,
+        super::TO,
+        Key::number(
+            "length",
+            "m",
+            Range::POSITIVE,
+            "of each; how long it is where its ends rest where left out",
+        ),
+    ],
+);
+
+static JOINT: Keys = Keys::new(
+    "constraint_joint",
+    "pairs of masses at one place, named as those of rods are",
+    &[super::CHAIN, super::LOOP, super::ALL, super::PAIRED, super::REACH, super::FROM, super::TO],
+);
+
+const MOVES: Key = Key::new("motion", Shape::Table(&MOTION), "how it moves; it stays where left out");
+
+static NAIL: Keys = Keys::new(
+    "constraint_nail",
+    "a place for each mass: where it rests, or `place`",
+    &[Key::vector("place", "m", "for all of them"), MOVES],
+);
+
+static LINE: Keys = Keys::new(
+    "constraint_line",
+    "a straight line that masses stay on",
+    &[
+        Key::vector("place", "m", "on it; where each mass rests where left out"),
+        Key::vector("direction", "", "along it").required(),
+        MOVES,
+    ],
+);
+
+static PLANE: Keys = Keys::new(
+    "constraint_plane",
+    "a plane that masses stay on",
+    &[
+        Key::vector("place", "m", "on it; where each mass rests where left out"),
+        Key::vector("normal", "", "across it").required(),
+        MOVES,
+    ],
+);
+
+static SURFACE: Keys = Keys::new(
+    "constraint_surface",
+    "a surface that masses stay on, or a curve",
+    &[
+        Key::new("zero", Shape::Formula(LOAD_VARIABLES), "what vanishes on the surface").required(),
+        Key::new(
+            "also_zero",
+            Shape::Formula(LOAD_VARIABLES),
+            "what vanishes on a second one: masses stay on the curve where both do",
+        ),
+    ],
+);
+
+static ACCELERATION: Keys = Keys::new(
+    "constraint_acceleration",
+    "an acceleration of each mass, whatever else pulls",
+    &[
+        Key::new(
+            "formula",
+            Shape::VectorFormula(LOAD_VARIABLES),
+            "of the place where a mass rests and of time",
+        )
+        .in_unit("m/s^2")
+        .required(),
+        Key::new("axes", Shape::Axes, "those along which it is told; all three where left out"),
+    ],
+);
+
+const PART: Key = Key::new("part", Shape::Formula(&["t"]), "of what is enclosed at rest, which is kept")
+    .or(Value::Number(1.0));
+
+static AREA: Keys = Keys::new(
+    "constraint_area",
+    "the area within the closed line of all masses in the order of their numbers",
+    &[Key::vector("normal", "", "the line is seen against it").or(Value::Vector([0.0, 0.0, 1.0])), PART],
+);
+
+static VOLUME: Keys = Keys::new(
+    "constraint_volume",
+    "the volume within a closed surface of triangles",
+    &[
+        Key::new(
+            "triangles",
+            Shape::Vectors,
+            "three numbers of masses within the group, counterclockwise seen from outside",
+        )
+        .required(),
+        PART,
+    ],
+);
+
+static AUGMENTED: Keys = Keys::new(
+    "constraint_augmented",
+    "forces of an augmented Lagrangian, which keep what is constrained in the end; numbers are per metre, square metre or cubic metre of what it is off by",
+    &[
+        Key::number("stiffness", "", Range::NOT_NEGATIVE, "`c` of the force `−∇g (λ + c g + z ġ)`")
+            .required(),
+        Key::number("damping", "", Range::NOT_NEGATIVE, "`z` [s]").or(Value::Number(0.0)),
+        Key::number("rate", "", Range::NOT_NEGATIVE, "`k` of `λ' = k g` [1/s]").required(),
+    ],
+);
+
+const KINDS: &[&str] =
+    &["rod", "joint", "nail", "line", "plane", "surface", "acceleration", "area", "volume"];
+
+pub(super) static CONSTRAINT: Keys = Keys::new(
+    "constraint",
+    "geometric relations of masses, kept by forces that are solved for in each step",
+    &[
+        Key::new("name", Shape::Text, "what its force is called after the network's name; by its number where left out"),
+        Key::new(
+            "of",
+            Shape::Texts,
+            "the groups whose masses it is of, one or two of `rod` and `joint`; all masses where left out",
+        ),
+        Key::new("rod", Shape::Table(&ROD), "pairs at one distance"),
+        Key::new("joint", Shape::Table(&JOINT), "pairs at one place"),
+        Key::new("nail", Shape::Table(&NAIL), "each at a place"),
+        Key::new("line", Shape::Table(&LINE), "each on a straight line"),
+        Key::new("plane", Shape::Table(&PLANE), "each on a plane"),
+        Key::new("surface", Shape::Table(&SURFACE), "each where formulas vanish"),
+        Key::new("acceleration", Shape::Table(&ACCELERATION), "each accelerated as told"),
+        Key::new("area", Shape::Table(&AREA), "an area that they enclose"),
+        Key::new("volume", Shape::Table(&VOLUME), "a volume that they enclose"),
+        Key::number(
+            "time",
+            "s",
+            Range::NOT_NEGATIVE,
+            "of the critically damped motion by which what does not hold at the start comes to hold; within a step where it is 0",
+        )
+        .or(Value::Number(0.0)),
+        Key::new("augmented", Shape::Table(&AUGMENTED), "kept by an augmented Lagrangian, and not exactly"),
+    ],
+);
+
+/// A constraint on masses.
+pub struct ConstraintSpec {
+    /// Empty: it goes by its number.
+    pub name: String,
+    /// Names of groups; none for all masses.
+    pub of: Vec<String>,
+    pub kind: Option<ConstraintKind>,
+    /// [s]
+    pub time: f64,
+    pub augmented: Option<Augmented>,
+    pub site: Site,
+    /// Of what is said of its kind.
+    pub kind_site: Site,
+}
+
+/// What is related.
+pub enum ConstraintKind {
+    /// At a length [m], that at rest where `None`.
+    Rod(Join, Option<f64>),
+    Joint(Join),
+    Nail(Guided),
+    Line(Guided, Vec3),
+    Plane(Guided, Vec3),
+    /// Of [`LOAD_VARIABLES`].
+    Surface(Vec<Formula>),
+    /// [m/s²]
+    Acceleration([Formula; 3], [bool; 3]),
+    /// Seen against a normal, and the part of what it is at rest that is kept, of time.
+    Area(Vec3, Formula),
+    /// Of triangles, and the part likewise.
+    Volume(Vec<[u32; 3]>, Formula),
+}
+
+/// What guides masses.
+pub struct Guided {
+    /// Where each mass rests where `None` [m].
+    pub place: Option<Vec3>,
+    pub motion: Option<MotionSpec>,
+}
+
+impl Guided {
+    fn read(reader: &Reader) -> Self {
+        let motion = reader.table("motion").and_then(|table| MotionSpec::read(&table));
+        Self { place: reader.maybe_vector("place"), motion }
+    }
+}
+
+impl ConstraintSpec {
+    pub(super) fn read(reader: &Reader) -> Self {
+        let of = reader.texts("of");
+        let written = reader.written(KINDS);
+        let kind = match written[..] {
+            [kind] => reader.table(kind).and_then(|table| ConstraintKind::read(kind, &of, &table)),
+            _ => {
+                let message = match written.len() {
+                    0 => "it is not said what is constrained".to_owned(),
+                    _ => format!("a constraint is of one kind, this is {}", written.join(" and ")),
+                };
+                reader.log().add(
+                    Code::WrongType,
+                    &reader.site(),
+                    message,
+                    format!("one of {}", KINDS.join(", ")),
+                );
+                None
+            }
+        };
+        let augmented = reader.table("augmented").map(|table| Augmented {
+            stiffness: table.number("stiffness"),
+            damping: table.number("damping"),
+            rate: table.number("rate"),
+        });
+        let refuse = |key: &str, message: &str, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        };
+        if augmented.is_some() && reader.has("time") {
+            refuse("time", "an augmented Lagrangian has times of its own", "`time` or `augmented`");
+        }
+        if let Some(ConstraintKind::Acceleration(..)) = kind {
+            for key in reader.written(&["time", "augmented"]) {
+                refuse(key, "an acceleration is told, and held at once", "`acceleration` alone");
+            }
+        }
+        let kind_site = written.first().map_or_else(|| reader.site(), |kind| reader.site_of(kind));
+        Self {
+            name: reader.text("name"),
+            of,
+            kind,
+            time: reader.number("time"),
+            augmented,
+            site: reader.site(),
+            kind_site,
+        }
+    }
+}
+
+impl ConstraintKind {
+    fn read(kind: &str, of: &[String], reader: &Reader) -> Option<Self> {
+        Some(match kind {
+            "rod" | "joint" if of.len() > 2 => {
+                let message = format!("a {kind} has two ends");
+                reader.log().add(Code::Conflict, &reader.site(), message, "one group in `of`, or two");
+                return None;
+            }
+            "rod" => Self::Rod(Join::read(reader, of, &reader.site())?, reader.maybe_number("length")),
+            "joint" => Self::Joint(Join::read(reader, of, &reader.site())?),
+            "nail" => Self::Nail(Guided::read(reader)),
+            "line" => Self::Line(Guided::read(reader), axis(reader, "direction")?),
+            "plane" => Self::Plane(Guided::read(reader), axis(reader, "normal")?),
+            "surface" => {
+                let zeros = ["zero", "also_zero"].map(|key| reader.maybe_formula(key));
+                Self::Surface(zeros.into_iter().flatten().collect())
+            }
+            "acceleration" => {
+                Self::Acceleration(reader.maybe_vector_formula("formula")?, reader.axes("axes"))
+            }
+            "area" => Self::Area(axis(reader, "normal")?, part(reader)?),
+            _ => Self::Volume(triangles(reader)?, part(reader)?),
+        })
+    }
+}
+
+/// A vector that has a direction, made of length 1.
+fn axis(reader: &Reader, key: &str) -> Option<Vec3> {
+    let axis = reader.vector(key).try_normalised();
+    if axis.is_none() && reader.has(key) {
+        let expected = "a vector that is not zero, such as [0, 0, 1]";
+        reader.log().add(Code::Conflict, &reader.site_of(key), "an axis of no length", expected);
+    }
+    axis
+}
+
+fn part(reader: &Reader) -> Option<Formula> {
+    if reader.has("part") { reader.maybe_formula("part") } else { Some(Formula::constant(1.0)) }
+}
+
+/// Numbers of a closed surface, whose sides are each met by one in the opposite direction.
+fn triangles(reader: &Reader) -> Option<Vec<[u32; 3]>> {
+    let refuse = |message: String, expected: &str| {
+        reader.log().add(Code::OutOfRange, &reader.site_of("triangles"), message, expected);
+        None
+    };
+    let mut triangles = Vec::new();
+    for (index, corners) in reader.vectors("triangles").into_iter().enumerate() {
+        let is_number = |x: f64| x >= 0.0 && x.fract() == 0.0 && x <= f64::from(u32::MAX);
+        let corners = corners.to_array();
+        let [a, b, c] = corners;
+        if !corners.into_iter().all(is_number) || a == b || b == c || c == a {
+            let message = format!("triangles[{index}] is {corners:?}");
+            return refuse(message, "three different numbers of masses");
+        }
+        triangles.push(corners.map(|corner| corner as u32));
+    }
+    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    let mut met = std::collections::HashMap::new();
+    triangles.iter().flat_map(|corners| sides(*corners)).for_each(|side| *met.entry(side).or_insert(0) += 1);
+    for side in triangles.iter().flat_map(|corners| sides(*corners)) {
+        let [a, b] = side;
+        if met[&side] != 1 || met.get(&[b, a]) != Some(&1) {
+            let message = format!("the side from mass {a} to mass {b} is not met by one other triangle");
+            return refuse(
+                message,
+                "a closed surface, all of whose triangles are counterclockwise seen from outside",
+            );
+        }
+    }
+    if triangles.is_empty() && reader.has("triangles") {
+        return refuse("there are no triangles".to_owned(), "at least four, which close a surface");
+    }
+    Some(triangles)
+}

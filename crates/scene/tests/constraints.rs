@@ -1,0 +1,268 @@
+//! Constraints between masses: what is kept, shared out, refused and told.
+
+use std::path::Path;
+
+use souple_engine::{StepError, World};
+use souple_models::network::Constraints;
+use souple_scene::Scene;
+
+fn read(text: &str, settings: &[&str]) -> Result<Scene, String> {
+    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+    souple_scene::read_text("constraints", text, Path::new("."), &settings)
+        .map_err(|errors| errors.to_string())
+}
+
+fn started(text: &str, settings: &[&str]) -> World {
+    let scene = read(text, settings).unwrap_or_else(|message| panic!("{message}"));
+    scene.model.start(scene.state)
+}
+
+/// Multipliers of the first component, by force and relation.
+fn multipliers(world: &World, name: &str) -> Vec<f64> {
+    let mut found = Vec::new();
+    world.visit_forces(0, &mut |force, at| {
+        if let Some(constraints) =
+            force.as_any().downcast_ref::<Constraints>().filter(|_| force.name() == name)
+        {
+            found.extend((0..constraints.relations().len()).map(|index| constraints.multiplier(index, at).x));
+        }
+    });
+    found
+}
+
+/// Seven masses that tumble freely, joined by six rods.
+const TUMBLING: &str = r#"
+format = 1
+[world]
+period = "5 ms"
+[systems.main]
+stepper = { name = "t_simulation", start = "trajectory" }
+[networks.chain]
+angular_velocity = [1, 2, 3]
+[networks.chain.masses.beads]
+positions = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1], [0, 2, 1], [0.5, 2.5, 1]]
+mass = 0.3
+[[networks.chain.constraints]]
+name = "rods"
+rod = { chain = true }
+[probes.energy]
+quantity = "energy.kinetic"
+[probes.momentum]
+quantity = "momentum"
+[probes.angular_momentum]
+quantity = "angular_momentum"
+"#;
+
+fn probes(text: &str, settings: &[&str], steps: usize) -> Vec<[Vec<f64>; 3]> {
+    let scene = read(text, settings).unwrap();
+    let probes = scene.probes;
+    let mut world = scene.model.start(scene.state);
+    let mut all = Vec::new();
+    for _ in 0..steps {
+        world.step().unwrap();
+        all.push([0, 1, 2].map(|index| probes[index].measure(&mut world).numbers()));
+    }
+    all
+}
+
+/// Forces along rods make no momentum and no moment, and what they do to the kinetic energy swings and does not drift.
+#[test]
+fn rods_keep_momenta_and_energy() {
+    let course = probes(TUMBLING, &[], 2000);
+    let [_, momentum, turning] = course[0].clone();
+    for [_, later, later_turning] in &course {
+        for axis in 0..3 {
+            // rods hold to 1e-12 of places in each of two thousand steps
+            assert!((later[axis] - momentum[axis]).abs() < 1e-10, "{later:?}");
+            assert!((later_turning[axis] - turning[axis]).abs() < 1e-8, "{later_turning:?} {turning:?}");
+        }
+    }
+    let mean = |course: &[[Vec<f64>; 3]]| {
+        course.iter().map(|[energy, ..]| energy[0]).sum::<f64>() / course.len() as f64
+    };
+    let (early, late) = (mean(&course[..1000]), mean(&course[1000..]));
+    // the scheme is symplectic: energy is off by a share of (ω h)² ~ (3.7 · 5e-3)² at any time
+    assert!((early - late).abs() < 4e-4 * early, "{early} {late}");
+}
+
+/// What follows the state is in State: a run that goes on from it in a new workspace has the same bits.
+#[test]
+fn constraints_go_on_from_state() {
+    let mut whole = started(TUMBLING, &[]);
+    (0..40).for_each(|_| {
+        whole.step().unwrap();
+    });
+    let scene = read(TUMBLING, &[]).unwrap();
+    let mut second = scene.model.start(whole.state().clone());
+    for _ in 0..40 {
+        whole.step().unwrap();
+        second.step().unwrap();
+    }
+    assert_eq!(whole.state().systems[0].q, second.state().systems[0].q);
+    assert_eq!(multipliers(&whole, "chain.rods"), multipliers(&second, "chain.rods"));
+}
+
+/// A mass of 1 kg that hangs on a rod.
+const HANGING: &str = r#"
+format = 1
+[world]
+period = "1 ms"
+gravity = [0, -10, 0]
+[systems.main]
+stepper = "t_simulation"
+[networks.rope.masses.bob]
+positions = [[0, 0, 0], [0, -1, 0]]
+mass = 1
+[[networks.rope.constraints]]
+name = "nail"
+nail = {}
+[[networks.rope.constraints]]
+name = "rod"
+rod = { chain = true }
+[[networks.rope.pins]]
+region = { nearest = [0, 0, 0] }
+"#;
+
+/// Two rods in the place of one bear half each: of all forces that hold the mass, those of the least sum of squares.
+#[test]
+fn relations_that_repeat_each_other_share_what_they_bear() {
+    let without_nail = |more: &str| {
+        let text = HANGING.replace("[[networks.rope.constraints]]\nname = \"nail\"\nnail = {}\n", more);
+        let mut world = started(&text, &[]);
+        (0..50).for_each(|_| {
+            world.step().unwrap();
+        });
+        world
+    };
+    let one = without_nail("");
+    // rounding of places over the square of a step
+    assert!((multipliers(&one, "rope.rod")[0] + 10.0).abs() < 1e-5);
+    let two = without_nail("[[networks.rope.constraints]]\nname = \"twin\"\nrod = { chain = true }\n");
+    for name in ["rope.rod", "rope.twin"] {
+        assert!((multipliers(&two, name)[0] + 5.0).abs() < 1e-5, "{:?}", multipliers(&two, name));
+    }
+}
+
+/// Relations that contradict each other end the run with the name of one of them.
+#[test]
+fn contradictions_are_told() {
+    let lead = r#"[{ region = { nearest = [0, -1, 0] }, motion = { formula = [0, "-t", 0] } }, { region = { nearest = [0, 0, 0] } }]"#;
+    let text = HANGING
+        .replace("name = \"nail\"\nnail = {}", "name = \"plane\"\nof = []\nplane = { normal = [0, 0, 1] }");
+    let mut world = started(&text, &[&format!("networks.rope.pins={lead}")]);
+    let refused = world.step().unwrap_err();
+    let StepError::Unkept { force, relation, off, .. } = refused.error else { panic!("{refused}") };
+    assert_eq!((force.as_str(), relation.as_str()), ("rope.rod", "a rod of 1 m (number 0)"));
+    // led by 1 mm in a step
+    assert!((off - 1e-3).abs() < 1e-12, "{off}");
+}
+
+/// Rods follow what pins lead.
+#[test]
+fn rods_follow_led_masses() {
+    let lead = r#"[{ region = { nearest = [0, 0, 0] }, motion = { formula = ["0.1 * sin(5 * t)", 0, 0] } }]"#;
+    let text =
+        HANGING.replace("name = \"nail\"\nnail = {}", "name = \"plane\"\nplane = { normal = [0, 0, 1] }");
+    let mut world = started(&text, &[&format!("networks.rope.pins={lead}")]);
+    for _ in 0..1000 {
+        world.step().unwrap();
+        let q = &world.state().systems[0].q;
+        // places of the order of one, to 1e-12
+        assert!(((q[0] - q[1]).length() - 1.0).abs() < 1e-11);
+    }
+}
+
+/// A thousand rods in a row are found as well as two: a level chain, let go by all but its end.
+#[test]
+fn a_long_chain_is_held() {
+    let masses = r#"networks.chain.masses.beads={ line = { from = [0, 0, 0], to = [10, 0, 0], count = 1001 }, mass = 0.01 }"#;
+    let settings = [
+        masses,
+        "networks.chain.angular_velocity=[0, 0, 0]",
+        r#"networks.chain.pins=[{ region = { nearest = [0, 0, 0] } }]"#,
+        r#"world.gravity=[0, -10, 0]"#,
+        // the first rod turns by some hundredths in a step
+        r#"world.period="1 ms""#,
+    ];
+    let mut world = started(TUMBLING, &settings);
+    (0..100).for_each(|_| {
+        world.step().unwrap();
+    });
+    for pair in world.state().systems[0].q.windows(2) {
+        // each end to 1e-12 of ten metres
+        assert!(((pair[0] - pair[1]).length() - 0.01).abs() < 2e-11);
+    }
+}
+
+#[test]
+fn wrong_constraints_are_refused() {
+    let kind = |kind: &str| format!("networks.rope.constraints=[{{ {kind} }}]");
+    for (setting, words) in [
+        (kind("name = \"a\""), "it is not said what is constrained"),
+        (kind("nail = {}, rod = { chain = true }"), "a constraint is of one kind, this is rod and nail"),
+        (kind("rod = {}"), "join masses in one way"),
+        (kind("rod = { chain = true, length = 1.5 }"), "a rod of 1.5 m is off by 5.000e-1 at the start"),
+        (kind("rod = { from = [0], to = [2] }"), "to[0] is mass 2, but the group has 2"),
+        (
+            kind("rod = { chain = true }, of = [\"bobs\"]"),
+            "there is no group of masses `bobs` (did you mean `bob`?)",
+        ),
+        (kind("joint = { chain = true }"), "a joint is off by"),
+        (kind("plane = { normal = [0, 0, 0] }"), "an axis of no length"),
+        (kind("surface = { zero = \"log(y)\" }"), "there is no value of what is zero in `log(y)`"),
+        (kind("surface = { zero = \"1\" }"), "where no direction leads to it"),
+        (kind("acceleration = { formula = [\"1/t\", 0, 0] }"), "there is no value of an acceleration"),
+        (
+            kind("acceleration = { formula = [1, 0, 0] }, time = 1"),
+            "an acceleration is told, and held at once",
+        ),
+        (kind("area = {}"), "a line through 2 masses encloses nothing"),
+        (kind("volume = { triangles = [[0, 1, 2]] }"), "is not met by one other triangle"),
+        (kind("volume = { triangles = [[0, 1, 1]] }"), "triangles[0] is [0.0, 1.0, 1.0]"),
+        (
+            kind("volume = { triangles = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]] }"),
+            "triangles[0] is of mass 2, and there are 2",
+        ),
+        (
+            kind("nail = {}, time = 1, augmented = { stiffness = 1, rate = 1 }"),
+            "an augmented Lagrangian has times of its own",
+        ),
+        ("systems.main.stepper=verlet".to_owned(), "relates points by forces that are solved for"),
+        ("systems.main.stepper=backward_euler".to_owned(), "relates points by forces that are solved for"),
+        ("networks.rope.space=algorithmic".to_owned(), "`constraints` are in SI units"),
+    ] {
+        match read(HANGING, &[&setting]) {
+            Ok(_) => panic!("{setting} is taken"),
+            Err(message) => assert!(message.contains(words), "{setting}: {message}"),
+        }
+    }
+}
+
+/// An augmented Lagrangian is a force like others: any stepper takes it, and each brings the mass to hang on its rod.
+#[test]
+fn augmented_lagrangians_go_with_any_stepper() {
+    let rod = r#"networks.rope.constraints=[{ name = "rod", rod = { chain = true }, augmented = { stiffness = 400, damping = 60, rate = 1000 } }]"#;
+    for stepper in ["t_simulation", "verlet", "backward_euler", "bdf2"] {
+        let mut world = started(HANGING, &[rod, &format!("systems.main.stepper={stepper}")]);
+        (0..4000).for_each(|_| {
+            world.step().unwrap();
+        });
+        // s³ + 60 s² + 400 s + 1000 = 0 has its slowest root at -4.2: e^-16.8 of 10 N/400 N/m is left
+        let q = &world.state().systems[0].q;
+        assert!((q[1].y + 1.0).abs() < 1e-6, "{stepper}: {}", q[1].y);
+        assert!((multipliers(&world, "rope.rod")[0] + 10.0).abs() < 1e-3, "{stepper}");
+    }
+}
+
+/// One whose stiffness a step does not bear is warned of as links are.
+#[test]
+fn stiff_augmented_lagrangians_are_warned_of() {
+    let warned = |stiffness: &str| {
+        let rod = format!(
+            r#"networks.rope.constraints=[{{ rod = {{ chain = true }}, augmented = {{ stiffness = {stiffness}, rate = 1 }} }}]"#
+        );
+        !read(HANGING, &[&rod]).unwrap().warnings.is_empty()
+    };
+    // 2 c < 4 m/Te²
+    assert!(warned("2.1e6") && !warned("1.9e6"));
+}
