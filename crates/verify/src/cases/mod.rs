@@ -6,6 +6,7 @@ mod cantilever_orders;
 mod cantilevers;
 mod characteristics;
 mod conditional;
+mod constraints;
 mod contact;
 mod courses;
 mod derivations;
@@ -111,6 +112,7 @@ pub const TABLES: &[&[Case]] = &[
     conditional::CASES,
     switching::CASES,
     heat::CASES,
+    constraints::CASES,
     material_fields::CASES,
     matter::CASES,
     plastic_bodies::CASES,

@@ -1,0 +1,211 @@
+//! Constraints between masses: rods, wires and told accelerations, kept exactly; areas and volumes.
+
+use super::network::OSCILLATOR;
+use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
+
+const RODS: Case = Case {
+    capabilities: &["JIM-97"],
+    scene: "exact_rods",
+    reading: Reading::component("bob", 0).after(296),
+    mutation: "networks.pendulum.masses.hook.positions=[[-4.001, 0, 0]]",
+    source: "specification §6.3, PA-15, with the multipliers solved for",
+    ..OSCILLATOR
+};
+
+const WIRES: Case = Case {
+    scene: "bead_on_wire",
+    mutation: "world.gravity=[0, -9.8, 0]",
+    source: "specification §6.3, PA-15: a point on a path",
+    ..RODS
+};
+
+const TOLD: Case = Case {
+    reading: Reading::component("told", 0),
+    mutation: r#"networks.told.constraints[0].acceleration.formula=["2 * cos(3.01 * t)", 0, 0]"#,
+    source: "specification §6.3, PA-42: accelerations that are prescribed",
+    ..WIRES
+};
+
+const KEPT: Case = Case {
+    scene: "kept_inside",
+    reading: Reading::last("exact_area"),
+    tolerance: Tolerance::Relative(1e-12),
+    mutation: r#"networks.exact.constraints[0].area.part="1 + 1e-9""#,
+    source: "specification §6.2, PA-18: what is enclosed, as a constraint",
+    ..RODS
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "rod_pendulum_swings",
+        what: "place of a pendulum of one rod, let go level, near its lowest point",
+        // −4 + sin θ, sin(θ/2) = k sn(K − √(g/L) t, k), k = sin 45°
+        reference: -4.000_175_021_203_992,
+        // of second order: (ω h)²/4 of the length, ω² = 2 g/L at most
+        tolerance: Tolerance::Absolute(2e-5),
+        ..RODS
+    },
+    Case {
+        id: "rod_pendulum_order",
+        what: "order at which the same tends to it as the period gets smaller",
+        refinement: Some(Refinement {
+            size_of: "period [s]",
+            runs: &[
+                Variant {
+                    size: 8e-3,
+                    settings: &[r#"world.period="8 ms""#, "systems.main.steps_per_period=1"],
+                },
+                Variant {
+                    size: 8e-3 / 2.0,
+                    settings: &[r#"world.period="8 ms""#, "systems.main.steps_per_period=2"],
+                },
+                Variant {
+                    size: 8e-3 / 4.0,
+                    settings: &[r#"world.period="8 ms""#, "systems.main.steps_per_period=4"],
+                },
+            ],
+            limit: Limit::Known(-4.000_175_021_203_992),
+        }),
+        reading: Reading::component("bob", 0).after(74),
+        reference: 2.0,
+        // the next term is h² smaller
+        tolerance: Tolerance::Absolute(0.01),
+        mutation: r#"systems.main.stepper="t_simulation""#,
+        ..RODS
+    },
+    Case {
+        id: "rod_pendulum_keeps_length",
+        what: "the farthest place to the left in four seconds: the rod is a metre long, and energy is kept",
+        reading: Reading::component("bob", 0).taking(Statistic::Min),
+        reference: -5.0,
+        // it is level to (√(g/L) h/2)² at the step nearest to where it turns
+        tolerance: Tolerance::Absolute(1e-5),
+        ..RODS
+    },
+    Case {
+        id: "rod_pendulum_pulls",
+        what: "greatest pull of the rod: 3 m g at the lowest point",
+        reading: Reading::component("pull", 1).taking(Statistic::Max),
+        reference: 58.86,
+        // the step nearest to it is off by ω h/2, whose cosine is read twice, and the scheme by (ω h)²/24
+        tolerance: Tolerance::Relative(4e-5),
+        mutation: "networks.pendulum.masses.bob.mass=2.001",
+        ..RODS
+    },
+    Case {
+        id: "rod_frame_swings",
+        what: "place of the far corner of a square of six rods, one of which follows from the others, that swings as a rigid body, after 0.6 s",
+        reading: Reading::component("far_corner", 0).after(300),
+        // a compound pendulum of I = 0.72 kg m² from 135°
+        reference: 1.514_329_954_392_705,
+        tolerance: Tolerance::Absolute(2e-5),
+        mutation: "networks.frame.masses.corners.positions=[[1, 0, 0], [1.6, 0, 0], [1.601, 0.6, 0], [1, 0.6, 0]]",
+        source: "physical consistency; redundant relations, specification §6.3, PA-15",
+        ..RODS
+    },
+    Case {
+        id: "rod_frame_stays_square",
+        what: "area of the same square after four seconds",
+        reading: Reading::last("frame_area"),
+        reference: 0.36,
+        // each side and diagonal to 1e-12 of what is constrained, which is 4 m wide, at both of its ends
+        tolerance: Tolerance::Absolute(3e-11),
+        mutation: "networks.frame.masses.corners.positions=[[1, 0, 0], [1.6, 0, 0], [1.601, 0.6, 0], [1, 0.6, 0]]",
+        source: "physical consistency; redundant relations, specification §6.3, PA-15",
+        ..RODS
+    },
+    Case {
+        id: "rods_are_assembled",
+        what: "what a mass that is drawn to a nail a metre above is off by after the time τ",
+        reading: Reading::component("nailed", 1).after(100),
+        // −(1 + n b) rⁿ, r = e^{−h/τ}, b = 1 − r + r (1 − r)²/2: D'' + (2/τ) D' + D/τ² = 0 from rest, at steps of h
+        reference: -0.735_728_590_889_047_2,
+        tolerance: Tolerance::Absolute(1e-10),
+        mutation: r#"networks.assembly.constraints[0].time="0.21 s""#,
+        ..RODS
+    },
+    Case {
+        id: "bead_runs_down_helix",
+        what: "height of a bead that has run down a helix for 1.2 s",
+        reading: Reading::component("helix", 1),
+        // −½ g c²/(1 + c²) t², c = 0.3
+        reference: -0.5832,
+        // of second order in the 3.5 mrad that it turns by in a step at the end
+        tolerance: Tolerance::Absolute(2e-6),
+        ..WIRES
+    },
+    Case {
+        id: "bead_slides_down_line",
+        what: "velocity of a bead that slides down a slope of 3 in 5, half a step before 1.2 s",
+        reading: Reading::component("slope", 0),
+        // g (4/5)(3/5)(t − h/2)
+        reference: 5.648_205_6,
+        tolerance: Tolerance::Relative(1e-11),
+        ..WIRES
+    },
+    Case {
+        id: "line_bears_bead",
+        what: "what its line pushes it with: 3/5 of its weight, of that 4/5 along x",
+        reading: Reading::component("slope_holds", 0),
+        reference: 0.941_76,
+        // a mass of 0.2 kg, known to 1e-12 of 7 m, over the square of a step
+        tolerance: Tolerance::Absolute(3e-6),
+        ..WIRES
+    },
+    Case {
+        id: "acceleration_is_told",
+        what: "place of a mass whose acceleration along x is told, whatever a spring does to it",
+        // (2/9)(1 − cos 3 t)
+        reference: 0.421_501_870_296_477_1,
+        // sums of second order: (3 h)²/12 of it
+        tolerance: Tolerance::Absolute(1e-6),
+        ..TOLD
+    },
+    Case {
+        id: "told_acceleration_takes",
+        what: "force that it takes: m a + k x",
+        reading: Reading::component("takes", 0),
+        reference: 3.856_315_336_431_112,
+        // it is that of the step before, from 2.7 N/s less 1.2 N/s
+        tolerance: Tolerance::Absolute(0.004),
+        mutation: "networks.told.links[0].law.stiffness=10.1",
+        ..TOLD
+    },
+    Case {
+        id: "area_is_kept",
+        what: "area of a ring of masses that is drawn out to 1.3 of its width",
+        // 12 r² sin(2 π/24)
+        reference: 0.776_457_135_307_562_2,
+        ..KEPT
+    },
+    Case {
+        id: "area_is_kept_in_the_end",
+        what: "the same by an augmented Lagrangian, whose multiplier grows until nothing is off",
+        reading: Reading::last("augmented_area"),
+        reference: 0.776_457_135_307_562_2,
+        // it has three seconds, and times below a fifth of one
+        tolerance: Tolerance::Relative(1e-6),
+        mutation: "networks.augmented.constraints[0].augmented.rate=0",
+        ..KEPT
+    },
+    Case {
+        id: "volume_is_kept",
+        what: "equator of an octahedron whose poles are pressed to half their distance: √2 times as wide",
+        reading: Reading::component("equator", 0),
+        reference: -0.092_893_218_813_452_48,
+        // motion along the sheet of shapes of that volume has died out
+        tolerance: Tolerance::Absolute(1e-9),
+        mutation: r#"networks.pressed.constraints[0].volume.part="1 + 0.001 * smoothstep(0, 1, t)""#,
+        ..KEPT
+    },
+    Case {
+        id: "volume_pushes",
+        what: "force of its pressure on a pole: the springs of the equator do the work of the poles",
+        reading: Reading::component("pole", 1),
+        // sides of √2 a = 1 m at 20 N/m, a = √½ m: dE/da = 4·20 (1 − √½) √2, E = E(a(b)), a² b = a₀² b₀: |da/db| = a/(2 b) = √2, halved between two poles
+        reference: 23.431_457_505_076_2,
+        tolerance: Tolerance::Relative(1e-7),
+        mutation: "networks.pressed.links[0].law.stiffness=20.1",
+        ..KEPT
+    },
+];
