@@ -199,9 +199,9 @@ pub trait Levels: Send + Sync {
     /// Elastic forces of samples that a step so divided evaluates, by the last lists made.
     fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize;
 
-    /// What a step so divided has to do with this memory.
-    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations;
+    /// What a step so divided has to do with this memory; what a scratch knows of the same is not made anew.
+    fn workload(&self, division: &Division, memory: &[f64], scratch: &Scratch) -> Evaluations;
 
-    /// Who does what, by the memory.
-    fn census(&self, memory: &[f64]) -> Census;
+    /// Who does what, by the memory; likewise.
+    fn census(&self, memory: &[f64], scratch: &Scratch) -> Census;
 }

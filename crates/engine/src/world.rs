@@ -241,6 +241,11 @@ impl World {
         for (index, force) in model.forces.iter().enumerate() {
             force.visit_near(&model.view(index, &ws.rows, state, &around), &ws.scratches[index], visit);
         }
+    /// The scratch of a force of a system.
+    pub fn scratch(&self, system: usize, force: usize) -> &Scratch {
+        &self.workspace.systems[system].scratches[force]
+    }
+
     }
 
     /// Simulated seconds.

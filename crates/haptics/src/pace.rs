@@ -43,7 +43,12 @@ const GIVEN_UP: u32 = 3;
 
 impl Pace {
     pub fn new(period: Duration) -> Self {
-        Self { period, next: Instant::now() + period, awake: Awake(LEAST_AWAKE) }
+        Self::from(Instant::now(), period)
+    }
+
+    /// Wakes at `start` and so many periods.
+    pub fn from(start: Instant, period: Duration) -> Self {
+        Self { period, next: start + period, awake: Awake(LEAST_AWAKE) }
     }
 
     /// Waits for the next date; how late it is, and how many dates were left out before it.
@@ -69,32 +74,69 @@ impl Pace {
     }
 }
 
-/// Puts this thread before all others of the machine where the system allows it; what that came to, in words.
-pub fn hurry() -> String {
-    if has_hurried() {
-        format!("real-time priority {PRIORITY}")
+/// Of threads that have a date to keep, the one that stands before the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rank {
+    /// The loop at the devices, which never works for long.
+    Devices,
+    /// The world, which may be behind, and then has all the time that devices leave.
+    World,
+}
+
+impl Rank {
+    /// Of real-time threads, of which the system's own stand higher.
+    fn priority(self) -> i32 {
+        match self {
+            Self::Devices => 80,
+            Self::World => 40,
+        }
+    }
+}
+
+/// Puts this thread before others of the machine where the system allows it; what that came to, in words.
+pub fn hurry(rank: Rank) -> String {
+    if has_hurried(rank.priority()) {
+        format!("real-time priority {}", rank.priority())
     } else {
         "no real-time priority: the system refuses it, and other programs may delay the loop".to_owned()
     }
 }
 
-/// Of real-time threads, of which the system's own stand higher.
-const PRIORITY: i32 = 80;
+/// Puts this thread among all others again.
+pub fn step_back() {
+    has_stepped_back();
+}
 
 #[cfg(target_os = "linux")]
-fn has_hurried() -> bool {
+fn has_hurried(priority: i32) -> bool {
     // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
     unsafe {
         // sleeps end when they are due, not when it suits the system
         libc::prctl(libc::PR_SET_TIMERSLACK, 1);
-        let parameters = libc::sched_param { sched_priority: PRIORITY };
+        let parameters = libc::sched_param { sched_priority: priority };
         libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters) == 0
     }
 }
 
+#[cfg(target_os = "linux")]
+fn has_stepped_back() -> bool {
+    // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
+    unsafe {
+        // 0: the slack that the thread had when it began
+        libc::prctl(libc::PR_SET_TIMERSLACK, 0);
+        let parameters = libc::sched_param { sched_priority: 0 };
+        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_OTHER, &parameters) == 0
+    }
+}
+
 #[cfg(not(target_os = "linux"))]
-fn has_hurried() -> bool {
+fn has_hurried(_: i32) -> bool {
     false
+}
+
+#[cfg(not(target_os = "linux"))]
+fn has_stepped_back() -> bool {
+    true
 }
 
 /// How long periods were, in bins of ten microseconds.
@@ -110,7 +152,7 @@ pub struct Histogram {
 /// Width of a bin [s].
 const BIN: f64 = 10e-6;
 /// What is longer is counted together [s].
-const SPAN: f64 = 10.0 * TICK;
+const SPAN: f64 = 50.0 * TICK;
 
 impl Default for Histogram {
     fn default() -> Self {
@@ -199,14 +241,14 @@ mod tests {
     fn periods_are_counted() {
         let mut histogram = Histogram::default();
         (0..999).for_each(|_| histogram.push(1.004e-3));
-        histogram.push(25e-3);
-        assert_eq!((histogram.count(), histogram.longest()), (1000, 25e-3));
+        histogram.push(75e-3);
+        assert_eq!((histogram.count(), histogram.longest()), (1000, 75e-3));
         assert!((histogram.quantile(0.999) - 1.01e-3).abs() < 1e-12);
-        assert_eq!(histogram.quantile(1.0), 25e-3);
+        assert_eq!(histogram.quantile(1.0), 75e-3);
         assert!((histogram.share_within(1.2e-3) - 0.999).abs() < 1e-12);
         assert_eq!(histogram.share_within(1.0e-3), 0.0);
         assert!((histogram.jitter(1e-3, 0.999) - 10e-6).abs() < 1e-12);
-        assert!((histogram.jitter(1e-3, 1.0) - 24e-3).abs() < 1e-12);
+        assert!((histogram.jitter(1e-3, 1.0) - 74e-3).abs() < 1e-12);
         // a period of 0.5 ms is half a millisecond off, with a bin below it
         histogram.push(0.504e-3);
         assert!((histogram.jitter(1e-3, 0.999) - 0.5e-3).abs() < 1e-12);

@@ -15,7 +15,8 @@ use crate::TICK;
 use crate::coupling::Moving;
 use crate::device::Device;
 use crate::exchange::Latest;
-use crate::pace::{Histogram, Pace, hurry};
+use crate::freshness::{Ages, Freshness};
+use crate::pace::{Histogram, Pace, Rank, hurry};
 use crate::port::{Port, PortState};
 use crate::smoothing::{Between, ForceSmoothing, Smoothing};
 
@@ -45,6 +46,8 @@ pub struct Told {
     pub tool: Moving,
     /// Of points that the tool holds, on it [N].
     pub felt: Vec3,
+    /// When the device was where the world was led to by it, see [`DeviceNow::At`] [s].
+    pub looked: f64,
 }
 
 /// One moment of one hand.
@@ -63,10 +66,11 @@ pub struct Tick {
 
 /// Where a device is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DeviceNow {
-    /// From where it started [m].
-    At(Vec3),
-    Lost,
+pub struct DeviceNow {
+    /// From where it started [m]; `None` where it is lost.
+    pub place: Option<Vec3>,
+    /// When it was looked at, since the loop began [s].
+    pub date: f64,
 }
 
 /// How the loop kept its time.
@@ -90,6 +94,7 @@ pub struct Served {
     pub ports: Vec<PortState>,
     /// What devices said that made no sense.
     pub refused: Vec<u64>,
+    pub ages: Vec<Ages>,
 }
 
 /// The loop cannot be.
@@ -100,20 +105,23 @@ pub struct ServiceError(#[from] std::io::Error);
 /// Numbers between the loop and the world, of one hand.
 #[derive(Debug)]
 struct Wire {
-    /// Place, and 1 where it is there.
-    device: Latest<4>,
-    /// Place, velocity, what it feels, and how often it was told.
-    tool: Latest<10>,
+    /// Place, 1 where it is there, and when [s].
+    device: Latest<5>,
+    /// Place, velocity, what it feels, how often it was told, and when the device was looked at [s].
+    tool: Latest<11>,
 }
 
 /// The loop at work.
 pub struct Service {
     wires: Vec<Arc<Wire>>,
     told: f64,
+    start: Instant,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<Served>>,
 }
 
+/// Within which of its tick all devices are served, as a rule [s].
+const SERVED: f64 = 0.1 * TICK;
 /// Ticks that an emulated person lives through at most when the loop wakes too late.
 const MOST_AT_ONCE: u32 = 1000;
 
@@ -124,31 +132,39 @@ impl Service {
     /// The system gives no thread.
     pub fn start(stations: Vec<Station>, duration: f64) -> Result<Self, ServiceError> {
         let wire = |_: &Station| {
-            Arc::new(Wire { device: Latest::new([0.0, 0.0, 0.0, 1.0]), tool: Latest::new([0.0; 10]) })
+            Arc::new(Wire { device: Latest::new([0.0, 0.0, 0.0, 1.0, 0.0]), tool: Latest::new([0.0; 11]) })
         };
         let wires: Vec<Arc<Wire>> = stations.iter().map(wire).collect();
         let stop = Arc::new(AtomicBool::new(false));
         let (of_loop, end) = (wires.clone(), stop.clone());
         let room = (duration / TICK).ceil().clamp(0.0, 1e7) as usize;
+        let start = Instant::now();
         let thread = std::thread::Builder::new()
             .name("devices".to_owned())
-            .spawn(move || serve(stations, &of_loop, &end, room))?;
-        Ok(Self { wires, told: 0.0, stop, thread: Some(thread) })
+            .spawn(move || serve(stations, &of_loop, &end, start, room))?;
+        Ok(Self { wires, told: 0.0, start, stop, thread: Some(thread) })
+    }
+
+    /// When devices have been served next, as a rule: a world that begins then has their newest places, and the rest of the tick to
+    /// answer within.
+    pub fn next_served(&self) -> Instant {
+        let ticks = (self.start.elapsed().as_secs_f64() / TICK).floor() + 1.0;
+        self.start + Duration::from_secs_f64(ticks * TICK + SERVED)
     }
 
     /// Where the device of a hand is; `None` where that cannot be told just now.
     pub fn device(&self, hand: usize) -> Option<DeviceNow> {
-        let [x, y, z, is_there] = self.wires[hand].device.read()?;
-        Some(if is_there == 1.0 { DeviceNow::At(Vec3::new(x, y, z)) } else { DeviceNow::Lost })
+        let [x, y, z, is_there, date] = self.wires[hand].device.read()?;
+        Some(DeviceNow { place: (is_there == 1.0).then_some(Vec3::new(x, y, z)), date })
     }
 
     /// The world tells where all tools are, and what they feel.
     pub fn tell(&mut self, all: impl Iterator<Item = Told>) {
         self.told += 1.0;
-        for (wire, Told { tool, felt }) in self.wires.iter().zip(all) {
+        for (wire, Told { tool, felt, looked }) in self.wires.iter().zip(all) {
             let ([x, y, z], [u, v, w]) = (tool.place.to_array(), tool.velocity.to_array());
             let [a, b, c] = felt.to_array();
-            wire.tool.write(&[x, y, z, u, v, w, a, b, c, self.told]);
+            wire.tool.write(&[x, y, z, u, v, w, a, b, c, self.told, looked]);
         }
     }
 
@@ -177,32 +193,41 @@ struct Desk {
     port: PortState,
     device: Option<Vec3>,
     told: f64,
+    freshness: Freshness,
     ticks: Vec<Tick>,
 }
 
 impl Desk {
-    /// At the date `now`, by so many ticks after the last one.
-    fn serve(&mut self, wire: &Wire, now: f64, ticks: u32) {
+    /// At the date `now`, by so many ticks after the last one, and by the clock at `clock` [s].
+    fn serve(&mut self, wire: &Wire, now: f64, ticks: u32, clock: f64) {
         let Station { device, port, feels, .. } = &mut self.station;
         let elapsed = f64::from(ticks) * TICK;
         for _ in 0..ticks.min(MOST_AT_ONCE) {
             self.device = device.exchange(self.port.force);
         }
-        if let Some([x, y, z, u, v, w, a, b, c, told]) = wire.tool.read()
+        if let Some([x, y, z, u, v, w, a, b, c, told, looked]) = wire.tool.read()
             && told != self.told
         {
             self.told = told;
             let tool = Moving { place: Vec3::new(x, y, z), velocity: Vec3::new(u, v, w) };
             self.tool.tell(told as u64, tool, now);
-            self.felt.tell(Vec3::new(a, b, c), now);
+            self.felt.tell(told as u64, Vec3::new(a, b, c), now);
+            self.freshness.tell(told, looked);
         }
         let tool = self.tool.at(now);
-        match feels {
-            Feels::Tool => port.tick(&mut self.port, self.device, elapsed, tool),
-            Feels::Force => port.tick_with(&mut self.port, self.device, elapsed, self.felt.at(now)),
-        }
+        let shown = match feels {
+            Feels::Tool => {
+                port.tick(&mut self.port, self.device, elapsed, tool);
+                self.tool.periods(now)
+            }
+            Feels::Force => {
+                port.tick_with(&mut self.port, self.device, elapsed, self.felt.at(now));
+                self.felt.periods(now)
+            }
+        };
+        self.freshness.note(shown, clock);
         let [x, y, z] = self.port.place.to_array();
-        wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some()))]);
+        wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some())), clock]);
         if self.ticks.len() < self.ticks.capacity() {
             let PortState { force, energy, place, .. } = self.port;
             self.ticks.push(Tick { time: now, device: place, tool: tool.place, force, energy });
@@ -210,8 +235,15 @@ impl Desk {
     }
 }
 
-fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: usize) -> Served {
+fn serve(
+    stations: Vec<Station>,
+    wires: &[Arc<Wire>],
+    stop: &AtomicBool,
+    start: Instant,
+    room: usize,
+) -> Served {
     let desk = |station: Station| Desk {
+        freshness: Freshness::new(station.period),
         tool: Smoothing::new(station.between, station.period),
         felt: ForceSmoothing::new(station.between, station.period),
         station,
@@ -221,9 +253,8 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
         ticks: Vec::with_capacity(room),
     };
     let mut desks: Vec<Desk> = stations.into_iter().map(desk).collect();
-    let mut toll = Toll { priority: hurry(), ..Toll::default() };
-    let start = Instant::now();
-    let (mut pace, mut woken, mut dates) = (Pace::new(Duration::from_secs_f64(TICK)), start, 0_u64);
+    let mut toll = Toll { priority: hurry(Rank::Devices), ..Toll::default() };
+    let (mut pace, mut woken, mut dates) = (Pace::from(start, Duration::from_secs_f64(TICK)), start, 0_u64);
     while !stop.load(Ordering::Relaxed) {
         let (_, left_out) = pace.wait();
         let now = Instant::now();
@@ -233,7 +264,7 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
         // devices and tools are shown as of the date, by however much the loop woke later: they move on together
         dates += u64::from(left_out) + 1;
         for (desk, wire) in desks.iter_mut().zip(wires) {
-            desk.serve(wire, dates as f64 * TICK, left_out + 1);
+            desk.serve(wire, dates as f64 * TICK, left_out + 1, (now - start).as_secs_f64());
         }
         toll.busy += now.elapsed().as_secs_f64();
     }
@@ -242,8 +273,13 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
         let _ = desk.station.device.exchange(Vec3::ZERO);
     }
     let refused = desks.iter().map(|desk| desk.station.device.refused()).collect();
-    let (ticks, ports) = desks.into_iter().map(|desk| (desk.ticks, desk.port)).unzip();
-    Served { toll, ticks, ports, refused }
+    let mut served = Served { toll, ticks: Vec::new(), ports: Vec::new(), refused, ages: Vec::new() };
+    for desk in desks {
+        served.ticks.push(desk.ticks);
+        served.ports.push(desk.port);
+        served.ages.push(desk.freshness.ages);
+    }
+    served
 }
 
 #[cfg(test)]
@@ -266,6 +302,10 @@ mod tests {
         Station { name: "a".to_owned(), device, port, feels, between: Between::Interpolate, period: 0.01 }
     }
 
+    fn is_lost(service: &Service) -> bool {
+        service.device(0).is_some_and(|now| now.place.is_none())
+    }
+
     /// The loop feels the spring to a tool that rests, tells where its device is, and that it is lost, while the world says
     /// nothing at all.
     #[test]
@@ -274,8 +314,8 @@ mod tests {
         let station = at_a_desk(port, Box::new(Away { left: 40 }), Feels::Tool);
         let service = Service::start(vec![station], 1.0).expect("a thread");
         let (mut seen, clock) = (false, Instant::now());
-        while service.device(0) != Some(DeviceNow::Lost) && clock.elapsed() < Duration::from_secs(30) {
-            seen |= service.device(0) == Some(DeviceNow::At(Vec3::X * 0.01));
+        while !is_lost(&service) && clock.elapsed() < Duration::from_secs(30) {
+            seen |= service.device(0).and_then(|now| now.place) == Some(Vec3::X * 0.01);
             std::thread::sleep(Duration::from_micros(200));
         }
         let served = service.end().expect("an account");
@@ -318,11 +358,11 @@ mod tests {
         let tool = Moving { place: Vec3::X, velocity: Vec3::ZERO };
         let (felt, clock) = (Vec3::new(0.3, 0.0, -0.4), Instant::now());
         until(|| {
-            service.tell(std::iter::once(Told { tool, felt }));
+            service.tell(std::iter::once(Told { tool, felt, looked: 0.0 }));
             clock.elapsed() > Duration::from_millis(100)
         });
         is_away.store(true, Ordering::Relaxed);
-        until(|| service.device(0) == Some(DeviceNow::Lost));
+        until(|| is_lost(&service));
         let served = service.end().expect("an account");
         let forces: Vec<Vec3> = served.ticks[0].iter().map(|tick| tick.force).collect();
         assert!(

@@ -59,6 +59,15 @@ impl Smoothing {
         (self.told, self.since) = (tool, now);
     }
 
+    /// How many periods of the world had passed, and what part of the next one, when the tool was where it is shown.
+    pub fn periods(&self, now: f64) -> f64 {
+        let last = self.course.last() / self.period;
+        match self.between {
+            Between::Interpolate => last.min((now - self.course.delay) / self.period),
+            Between::Extrapolate | Between::Hold => last,
+        }
+    }
+
     /// Where it is shown.
     pub fn at(&self, now: f64) -> Moving {
         match self.between {
@@ -81,8 +90,10 @@ impl Smoothing {
 /// joins it as `e'' + 2 e'/τ + e/τ² = 0`, which no further message disturbs.
 #[derive(Clone, Copy, Debug)]
 struct Course {
-    /// Of the world, and in which a way joins another [s].
+    /// Of the world [s].
     period: f64,
+    /// In which a way of which nothing is told comes to rest, and in which it joins the one that is told then [s].
+    ease: f64,
     /// What was told, oldest first.
     knots: [Knot; KEPT],
     /// Clock less time of the world that is shown [s].
@@ -104,6 +115,8 @@ struct Knot {
 
 /// Messages by which the delay is learnt, more than a world makes that catches up.
 const KEPT: usize = 16;
+/// A world of shorter periods may still be held up for as long as this; within less a tool would come to rest with a blow [s].
+const EASE: f64 = 0.01;
 /// By so much of a period the delay falls with each message when it is longer than was needed of late: the tool is shown that much faster.
 const FALL: f64 = 0.05;
 
@@ -112,7 +125,13 @@ impl Course {
         // at rest for as long as anybody asks, and told as early as a world can tell: at the beginning of a period
         let knot =
             |i: usize| Knot { time: -period * (KEPT - 1 - i) as f64, tool: Moving::default(), late: -period };
-        Self { period, knots: std::array::from_fn(knot), delay: 0.0, apart: Moving::default(), since: 0.0 }
+        let (knots, ease) = (std::array::from_fn(knot), period.max(EASE));
+        Self { period, ease, knots, delay: 0.0, apart: Moving::default(), since: 0.0 }
+    }
+
+    /// The end of the last period told [s].
+    fn last(&self) -> f64 {
+        self.knots[KEPT - 1].time
     }
 
     fn tell(&mut self, step: u64, tool: Moving, now: f64) {
@@ -134,7 +153,7 @@ impl Course {
         let told = self.told_at(now - self.delay);
         // e = (e₀ + (ė₀ + e₀/τ) t) exp(-t/τ)
         let Moving { place, velocity } = self.apart;
-        let (passed, rate) = (now - self.since, 1.0 / self.period);
+        let (passed, rate) = (now - self.since, 1.0 / self.ease);
         let slope = velocity + place * rate;
         let left = f64::exp(-passed * rate);
         let apart = (place + slope * passed) * left;
@@ -151,10 +170,10 @@ impl Course {
         between(&self.knots[after - 1], &self.knots[after], time)
     }
 
-    /// It goes on and comes to rest within a period.
+    /// It goes on and comes to rest.
     fn beyond(&self, tool: Moving, passed: f64) -> Moving {
-        let passed = passed.min(self.period);
-        let left = 1.0 - passed / self.period;
+        let passed = passed.min(self.ease);
+        let left = 1.0 - passed / self.ease;
         Moving {
             place: tool.place + tool.velocity * (0.5 * passed * (1.0 + left)),
             velocity: tool.velocity * left,
@@ -190,6 +209,8 @@ pub struct ForceSmoothing {
     rate: Vec3,
     /// When it was told [s].
     since: f64,
+    /// Of which period, counted from 1.
+    step: u64,
 }
 
 /// Periods of the world in which a force stays that is not told anew: so late is a world that does not catch up.
@@ -200,14 +221,23 @@ const FADING: f64 = 0.2;
 impl ForceSmoothing {
     pub fn new(between: Between, period: f64) -> Self {
         let zero = Vec3::ZERO;
-        Self { between, period, from: zero, told: zero, rate: zero, since: 0.0 }
+        Self { between, period, from: zero, told: zero, rate: zero, since: 0.0, step: 0 }
     }
 
-    /// The world tells what is felt now [N].
-    pub fn tell(&mut self, force: Vec3, now: f64) {
+    /// The world tells what is felt at the end of its period of that number, counted from 1 [N].
+    pub fn tell(&mut self, step: u64, force: Vec3, now: f64) {
         self.from = self.at(now);
         self.rate = (force - self.told) / self.period;
-        (self.told, self.since) = (force, now);
+        (self.told, self.since, self.step) = (force, now, step);
+    }
+
+    /// How many periods of the world had passed, and what part of the next one, when what is shown was felt.
+    pub fn periods(&self, now: f64) -> f64 {
+        let share = ((now - self.since) / self.period).clamp(0.0, 1.0);
+        match self.between {
+            Between::Interpolate => self.step as f64 - 1.0 + share,
+            Between::Extrapolate | Between::Hold => self.step as f64,
+        }
     }
 
     /// What is shown [N]. A spring lets go where it is followed; a force does not, and fades where the world says no more.
@@ -235,10 +265,10 @@ mod tests {
         for (between, expected) in cases {
             let (mut smoothing, mut before, mut greatest) =
                 (ForceSmoothing::new(between, 0.01), 0.0, 0.0_f64);
-            for tick in 0..200 {
+            for tick in 0..200_u32 {
                 let now = f64::from(tick) * 1e-3;
                 if tick % 10 == 0 {
-                    smoothing.tell(Vec3::X * now, now);
+                    smoothing.tell(u64::from(tick / 10), Vec3::X * now, now);
                 }
                 let shown = smoothing.at(now).x;
                 // at first nothing is known of how fast it grows

@@ -176,7 +176,7 @@ fn nothing_is_lost_between_levels() {
     let mut energies = Vec::new();
     for pattern in PATTERNS {
         let mut body = Alone::new(body(&meshes, Coupling::Transpose, fixed(pattern)));
-        let census = body.force.census(&body.memory);
+        let census = body.force.census(&body.memory, &body.scratch);
         assert!(census.active.iter().sum::<usize>() > 0);
         // the impulse of one newton second on each finest point comes to active points, whole
         let count = body.force.masses().len();
@@ -299,7 +299,8 @@ fn the_transpose_keeps_momentum() {
             world.step().unwrap();
             most = most.max((world.momentum().0 - start).length() / start.length());
             let memory = &world.state().systems[0].memory;
-            let census = world.model().systems[0].forces[0].levels().unwrap().census(memory);
+            let census =
+                world.model().systems[0].forces[0].levels().unwrap().census(memory, world.scratch(0, 0));
             counts.push(census.active);
         }
         (most, counts)
@@ -335,7 +336,8 @@ fn come_and_go(measure: Measure) {
     for strength in [0.0, 60.0, 60.0, 60.0, 60.0, 0.0, 0.0, 0.0, 0.0] {
         body.place(twist(strength));
         body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
-        census.push(body.force.census(&body.memory));
+        census.push(body.force.census(&body.memory, &body.scratch));
+        assert_eq!(census.last(), Some(&body.force.census(&body.memory, &body.force.new_scratch())));
     }
     let (first, twisted, last) = (&census[0], &census[4], &census[8]);
     assert_eq!(first.active[1..], [0, 0]);
@@ -346,7 +348,7 @@ fn come_and_go(measure: Measure) {
     // a turn of the whole is no reason to refine
     body.place(|x| Vec3::new(-x.y, x.x, x.z));
     body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
-    assert_eq!(body.force.census(&body.memory), *first);
+    assert_eq!(body.force.census(&body.memory, &body.scratch), *first);
 }
 
 /// V-34: with its own stiffness taken implicitly a point bears twice the step of modified Euler and more. The limits follow
@@ -438,7 +440,9 @@ fn asking_first_is_counted() {
     let mut body = Alone::new(force);
     let mut spent = |division: &Division| {
         body.force.adapt(division, &mut body.rows, &mut body.memory, &mut body.scratch);
-        let workload = body.force.workload(division, &body.memory);
+        let workload = body.force.workload(division, &body.memory, &body.scratch);
+        // what the scratch of the step knows is what is found anew
+        assert_eq!(workload, body.force.workload(division, &body.memory, &body.force.new_scratch()));
         (body.force.evaluations(division, &body.scratch), workload)
     };
     let (plain, of_plain) = spent(&DIVISION);

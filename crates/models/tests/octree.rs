@@ -61,7 +61,7 @@ impl Body {
 
     fn adapt(&mut self) -> Census {
         self.force.adapt(&DIVISION, &mut self.rows, &mut self.memory, &mut self.scratch);
-        self.force.census(&self.memory)
+        self.force.census(&self.memory, &self.scratch)
     }
 
     fn active(&self) -> Vec<usize> {
@@ -138,7 +138,7 @@ fn particles_come_and_go() {
         assert!(census.grading <= 1);
         assert_eq!(census.neighbours.map(|neighbours| neighbours.unlisted), Some(0));
     }
-    let bent = body.force.census(&body.memory);
+    let bent = body.force.census(&body.memory, &body.scratch);
     let levels = bent.active.iter().filter(|count| **count > 0).count();
     assert!(levels > 1, "{:?}", bent.active);
 }

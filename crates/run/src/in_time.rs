@@ -7,7 +7,10 @@
 use std::time::{Duration, Instant};
 
 use souple_engine::{Edit, EditError, StageTimes};
-use souple_haptics::{DeviceNow, Feels, Histogram, Moving, Served, Service, ServiceError, Station, Told};
+use souple_haptics::{
+    DeviceNow, Feels, Histogram, Moving, Rank, Served, Service, ServiceError, Station, TICK, Told, hurry,
+    step_back,
+};
 
 use crate::{Control, Governor, Progress, Session, Stepped, Trace};
 
@@ -29,6 +32,8 @@ pub struct WorldToll {
     pub stages: StageTimes,
     /// How long periods took from beginning to beginning.
     pub begun: Histogram,
+    /// What came of the wish for priority.
+    pub priority: String,
 }
 
 /// What a run in time was.
@@ -57,6 +62,29 @@ pub enum TimeError {
 
 /// A world that is behind by more periods gives up catching up.
 const CATCHING_UP: f64 = 3.0;
+/// Of a tick.
+const ROUNDING: f64 = 1e-6;
+/// Probes are read no more often [s]: they are for people and files, and may cost more than a short period.
+const MEASURED: f64 = 0.01;
+
+/// The threads of the world before those of other programs, until it is dropped.
+struct Hurried;
+
+impl Hurried {
+    fn new(priority: &mut String) -> Self {
+        *priority = hurry(Rank::World);
+        rayon::broadcast(|_| hurry(Rank::World));
+        Self
+    }
+}
+
+impl Drop for Hurried {
+    fn drop(&mut self) {
+        step_back();
+        rayon::broadcast(|_| step_back());
+    }
+}
+
 /// When periods are due, by a clock that counts seconds from the beginning of a run.
 #[derive(Clone, Copy, Debug, Default)]
 struct Dates {
@@ -76,11 +104,14 @@ impl Dates {
             return left;
         }
         self.late += 1;
-        if -left > CATCHING_UP * self.period {
-            self.lost -= left;
-            self.start -= left;
+        if -left <= CATCHING_UP * self.period {
+            return 0.0;
         }
-        0.0
+        // in whole ticks of the devices, of which each period begins just after one
+        let lost = (-left / TICK - ROUNDING).ceil() * TICK;
+        self.lost += lost;
+        self.start += lost;
+        (left + lost).max(0.0)
     }
 
     /// Clock less world after so many periods, what was given up left out [s].
@@ -106,7 +137,10 @@ pub fn run_in_time(
     let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
     let mut governor = Governor::new(session.world.model());
-    let mut held = vec![true; session.hands.len()];
+    let mut leads = vec![Lead { is_held: true, looked: 0.0 }; session.hands.len()];
+    let _hurried = Hurried::new(&mut toll.priority);
+    let between_measures = (MEASURED / period).round().max(1.0) as u64;
+    std::thread::sleep(service.next_served().saturating_duration_since(Instant::now()));
     let (began, stages) = (Instant::now(), session.world.stages());
     let (mut dates, mut begun) = (Dates { period, ..Dates::default() }, began);
     let mut was_stopped = false;
@@ -118,18 +152,20 @@ pub fn run_in_time(
         let clock = Instant::now();
         toll.begun.push((clock - begun).as_secs_f64());
         begun = clock;
-        lead(session, &service, &mut held)?;
+        lead(session, &service, &mut leads)?;
         let stepped = session.step();
         if stepped != Stepped::On {
             was_stopped = stepped == Stepped::BrokenOff;
             break;
         }
-        service.tell(session.hands.iter().map(|hand| {
+        service.tell(session.hands.iter().zip(&leads).map(|(hand, lead)| {
             let in_hand = hand.of(&session.world);
             let tool = Moving { place: in_hand.tool, velocity: in_hand.tool_velocity };
-            Told { tool, felt: in_hand.felt }
+            Told { tool, felt: in_hand.felt, looked: lead.looked }
         }));
-        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+        if step.is_multiple_of(between_measures) {
+            session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+        }
         toll.periods = step;
         let load = clock.elapsed().as_secs_f64() / period;
         toll.loads.push(load);
@@ -167,18 +203,28 @@ fn stations(session: &Session, period: f64) -> Result<Vec<Station>, TimeError> {
     session.hands.iter().map(station).collect()
 }
 
+/// How a device leads its tool.
+#[derive(Clone, Copy, Debug)]
+struct Lead {
+    is_held: bool,
+    /// When it was where its tool is led to, by the clock of the devices [s].
+    looked: f64,
+}
+
 /// Devices lead their tools for a period.
-fn lead(session: &mut Session, service: &Service, held: &mut [bool]) -> Result<(), TimeError> {
-    for hand in 0..session.hands.len() {
+fn lead(session: &mut Session, service: &Service, leads: &mut [Lead]) -> Result<(), TimeError> {
+    for (hand, lead) in leads.iter_mut().enumerate() {
         // a device that cannot be told just now stays where it was
         let Some(device) = service.device(hand) else { continue };
         let (system, force) = (session.hands[hand].system, session.hands[hand].force.clone());
-        let is_held = device != DeviceNow::Lost;
+        let DeviceNow { place, date } = device;
+        let is_held = place.is_some();
+        lead.looked = date;
         let mut edits = Vec::new();
-        if let DeviceNow::At(place) = device {
+        if let Some(place) = place {
             edits.push(Edit::Lead { system, force: force.clone(), place });
         }
-        if std::mem::replace(&mut held[hand], is_held) != is_held {
+        if std::mem::replace(&mut lead.is_held, is_held) != is_held {
             let value = f64::from(u8::from(is_held));
             edits.push(Edit::SetParameter { system, force, parameter: "held".to_owned(), value });
         }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use souple_haptics::{Histogram, TICK, Tick};
+use souple_haptics::{Ages, Histogram, TICK, Tick};
 use souple_io::plot::{Axis, Curve, Plot, Scale};
 use souple_io::{Column, IoError};
 use souple_math::Vec3;
@@ -34,7 +34,17 @@ fn of_periods(periods: &Histogram, wanted: f64) -> Value {
     })
 }
 
-fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
+fn of_ages(ages: &Histogram) -> Value {
+    json!({
+        "mean_ms": 1e3 * ages.mean(),
+        "p50_ms": 1e3 * ages.quantile(0.5),
+        "p99_ms": 1e3 * ages.quantile(0.99),
+        "p99_9_ms": 1e3 * ages.quantile(0.999),
+        "greatest_ms": 1e3 * ages.longest(),
+    })
+}
+
+fn of_hand(ticks: &[Tick], jump: f64, refused: u64, ages: &Ages) -> Value {
     let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
     let least_energy = ticks.iter().map(|tick| tick.energy).fold(0.0, f64::min);
     json!({
@@ -44,6 +54,8 @@ fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
         "least_energy_j": least_energy,
         "energy_j": ticks.last().map_or(0.0, |tick| tick.energy),
         "refused": refused,
+        "age": of_ages(&ages.of_body),
+        "answer": of_ages(&ages.of_answer),
     })
 }
 
@@ -57,8 +69,8 @@ impl InTime {
         let period = session.world.model().period;
         let computing = (loads.iter().sum::<f64>() * period).max(f64::MIN_POSITIVE);
         let served = &self.served;
-        let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused);
-        let felt = felt.map(|((ticks, port), refused)| of_hand(ticks, port.jump, *refused));
+        let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused).zip(&served.ages);
+        let felt = felt.map(|(((ticks, port), refused), ages)| of_hand(ticks, port.jump, *refused, ages));
         let hands = session.hands.iter().map(|hand| hand.name.clone()).zip(felt);
         let status = match &session.failure {
             Some(_) => "failed",
@@ -80,6 +92,7 @@ impl InTime {
             },
             "hands": hands.collect::<serde_json::Map<String, Value>>(),
             "world": {
+                "priority": world.priority,
                 "periods": world.periods,
                 "simulated_seconds": world.periods as f64 * period,
                 "load": {

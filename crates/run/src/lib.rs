@@ -56,6 +56,7 @@ pub use report::{AroundSteps, Report, SkinChange, Status, counts};
 pub use session::{Change, ChangeError, Session, Stepped, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use trace::{Trace, write_csv};
+pub use souple_haptics::Histogram;
 
 use output::{OutputFolder, Plan};
 

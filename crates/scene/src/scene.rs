@@ -280,7 +280,7 @@ pub fn census(world: &World, system: usize, force: &str) -> Option<Census> {
     let of = &world.model().systems[system];
     let (index, levels) = levels(world, system, force)?;
     let memory = of.memory_ranges()[index].clone();
-    Some(levels.census(&world.state().systems[system].memory[memory]))
+    Some(levels.census(&world.state().systems[system].memory[memory], world.scratch(system, index)))
 }
 
 /// What a step of the body of a force has to do with the points that are active; `None` where it has no levels.
@@ -289,7 +289,8 @@ pub(crate) fn workload(world: &World, system: usize, force: &str) -> Option<Work
     let (index, levels) = levels(world, system, force)?;
     let (division, schedule) = of.stepper.ticks(world.model().timestep(system))?;
     let memory = of.memory_ranges()[index].clone();
-    let evaluations = levels.workload(&division, &world.state().systems[system].memory[memory]);
+    let memory = &world.state().systems[system].memory[memory];
+    let evaluations = levels.workload(&division, memory, world.scratch(system, index));
     Some(Workload { evaluations, schedule })
 }
 

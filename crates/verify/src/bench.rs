@@ -230,7 +230,7 @@ pub const BENCHES: &[Bench] = &[
     },
     Bench {
         name: "haptic_period_99_9",
-        what: "periods of the devices' loop beside the liver in an emulated hand, against the clock [ms]; the greatest change of the force from tick to tick [N]; loads of the worlds",
+        what: "periods of the devices' loop beside the liver in an emulated hand, against the clock [ms]; how old forces are [ms], and their greatest change from tick to tick [N]; loads of the worlds",
         run: hands::period,
     },
     Bench {

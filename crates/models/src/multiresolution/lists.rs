@@ -107,6 +107,11 @@ impl Work {
         }
     }
 
+    /// Whether all this was made from a memory.
+    pub fn is_of(&self, force: &LevelsForce, memory: &[f64]) -> bool {
+        self.known == memory[..force.stays()] && self.urges == memory[force.urges()..force.moved()]
+    }
+
     /// Brings roles, weights, masses and volumes to a memory.
     pub fn refresh(&mut self, force: &LevelsForce, memory: &[f64]) {
         let urges = &memory[force.urges()..force.moved()];

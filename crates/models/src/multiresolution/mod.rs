@@ -514,10 +514,8 @@ impl LevelsForce {
     }
 
     /// Who does what, by a memory of this force.
-    fn counted(&self, memory: &[f64]) -> Census {
+    fn counted(&self, memory: &[f64], work: &Work) -> Census {
         let (hierarchy, matter) = (&self.hierarchy, &self.matter);
-        let mut work = Work::new(self);
-        work.refresh(self, memory);
         let ghosts = work.roles.ghosts(hierarchy);
         let count = |is_counted: &dyn Fn(usize) -> bool| {
             let of_level = |points: &Range<usize>| points.clone().filter(|point| is_counted(*point)).count();

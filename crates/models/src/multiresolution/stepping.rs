@@ -239,15 +239,28 @@ impl Levels for LevelsForce {
         read(scratch).evaluations(division)
     }
 
-    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations {
+    fn workload(&self, division: &Division, memory: &[f64], scratch: &Scratch) -> Evaluations {
+        let count = |work: &Work| {
+            let of_rate = work.due.iter().map(|due| due.iter().flat_map(|due| due.slots()).count()).collect();
+            Evaluations { first: work.first_evaluations(division), of_rate }
+        };
+        let known = read(scratch);
+        if known.is_of(self, memory) && known.division == Some(*division) {
+            return count(known);
+        }
         let mut work = Work::new(self);
         work.refresh(self, memory);
         work.divide(self, division);
-        let of_rate = work.due.iter().map(|due| due.iter().flat_map(|due| due.slots()).count()).collect();
-        Evaluations { first: work.first_evaluations(division), of_rate }
+        count(&work)
     }
 
-    fn census(&self, memory: &[f64]) -> Census {
-        self.counted(memory)
+    fn census(&self, memory: &[f64], scratch: &Scratch) -> Census {
+        let known = read(scratch);
+        if known.is_of(self, memory) {
+            return self.counted(memory, known);
+        }
+        let mut work = Work::new(self);
+        work.refresh(self, memory);
+        self.counted(memory, &work)
     }
 }

@@ -141,5 +141,11 @@ fn print_summary(report: &Value) {
             number("energy_j"),
             number("least_energy_j"),
         ));
+        let most = |of: &str| hand[of]["p99_9_ms"].as_f64().unwrap_or(f64::NAN);
+        print_line(format_args!(
+            "hand {name}: 99.9 % of forces say of the body what was no more than {:.2} ms before when the next one comes, and answer within {:.2} ms to where the device was",
+            most("age"),
+            most("answer"),
+        ));
     }
 }

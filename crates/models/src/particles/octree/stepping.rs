@@ -208,14 +208,14 @@ impl Levels for OctreeForce {
             .sum()
     }
 
-    fn workload(&self, division: &Division, memory: &[f64]) -> Evaluations {
+    fn workload(&self, division: &Division, memory: &[f64], _: &Scratch) -> Evaluations {
         let mut work = Work::new(&self.tree);
         work.refresh(self, memory);
         work.divide(self, division);
         Evaluations { first: 0, of_rate: work.due.iter().map(Vec::len).collect() }
     }
 
-    fn census(&self, memory: &[f64]) -> Census {
+    fn census(&self, memory: &[f64], _: &Scratch) -> Census {
         let tree = &self.tree;
         let mut work = Work::new(tree);
         work.refresh(self, memory);
