@@ -30,6 +30,7 @@ pub mod state;
 pub mod steppers;
 pub mod system;
 pub mod tangent;
+mod timeline;
 pub mod tool;
 pub mod world;
 
@@ -55,6 +56,7 @@ pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState
 pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub use tangent::Curvature;
+pub use timeline::{Span, Timeline};
 pub use tool::{HeldTool, Tool, Toolbox};
 pub use world::{
     CommittedRows, EnergyReport, Field, FieldStep, Model, ResumeError, Workspace, World, WorldError,

@@ -16,6 +16,7 @@ use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+use crate::timeline::Timeline;
 use crate::tool::Toolbox;
 
 /// A field on a grid: steps itself in State from what rows did, and acts through ordinary forces that read
@@ -122,6 +123,7 @@ pub struct Workspace {
     /// For each coupling the number of its force in the faster system.
     fast_ends: Vec<Option<usize>>,
     interruption: Interruption,
+    timeline: Timeline,
 }
 
 /// A model, its state and its scratch, stepped together.
@@ -173,9 +175,15 @@ impl Model {
         };
         let fast_ends = self.couplings.iter().map(fast_end).collect();
         let field_scratches = self.fields.iter().map(|field| field.new_scratch()).collect();
-        let (next, interruption) = (state.clone(), Interruption::default());
-        let workspace =
-            Workspace { systems, field_scratches, field_seconds: 0.0, next, fast_ends, interruption };
+        let workspace = Workspace {
+            systems,
+            field_scratches,
+            field_seconds: 0.0,
+            next: state.clone(),
+            fast_ends,
+            interruption: Interruption::default(),
+            timeline: Timeline::default(),
+        };
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
@@ -233,6 +241,11 @@ impl World {
         &self.workspace.systems[system].rows
     }
 
+    /// The scratch of a force of a system.
+    pub fn scratch(&self, system: usize, force: usize) -> &Scratch {
+        &self.workspace.systems[system].scratches[force]
+    }
+
     /// Calls `visit` for every two rows of a system that forces let act on each other without pairs in State.
     pub fn visit_near(&self, system: usize, visit: &mut dyn FnMut([u32; 2])) {
         let (model, state, ws) =
@@ -241,11 +254,6 @@ impl World {
         for (index, force) in model.forces.iter().enumerate() {
             force.visit_near(&model.view(index, &ws.rows, state, &around), &ws.scratches[index], visit);
         }
-    /// The scratch of a force of a system.
-    pub fn scratch(&self, system: usize, force: usize) -> &Scratch {
-        &self.workspace.systems[system].scratches[force]
-    }
-
     }
 
     /// Simulated seconds.
@@ -356,9 +364,16 @@ impl World {
         }
     }
 
-    /// Goes on counting the time of stages where another world left off, and heeds what that did.
+    /// From here on a timeline has its stages: each `step` with the looks for what touches what in it (`collisions`), and the steps of
+    /// fields, of which surfaces that are shown are some (`surface`).
+    pub fn note_on(&mut self, timeline: &Timeline) {
+        self.workspace.timeline = timeline.clone();
+    }
+
+    /// Goes on counting the time of stages where another world left off, and heeds and tells what that did.
     pub fn inherit(&mut self, other: &Self) {
         self.heed(&other.workspace.interruption);
+        self.note_on(&other.workspace.timeline);
         for (own, before) in self.workspace.systems.iter_mut().zip(&other.workspace.systems) {
             own.stages = before.stages;
         }
@@ -392,7 +407,7 @@ impl World {
     /// # Errors
     /// A system or field could not step; State is as it was.
     pub fn step(&mut self) -> Result<(), WorldError> {
-        let start = self.time();
+        let (start, began) = (self.time(), Instant::now());
         let mut next = std::mem::take(&mut self.workspace.next);
         self.choose_what_reads_rows(start);
         let systems = &self.workspace.systems;
@@ -407,6 +422,7 @@ impl World {
             Err(_) => self.place_all_rows(),
         }
         self.workspace.next = next;
+        self.workspace.timeline.note("step", began);
         match stepped {
             Err(error) if error.error != StepError::Interrupted => {
                 Err(self.led_nowhere(start).unwrap_or(error))
@@ -472,6 +488,7 @@ impl World {
             system.place_rows(&state.q, &state.v, start, &mut ws.rows);
             system.look(ws, state, &around);
             ws.stages.pairs += clock.elapsed().as_secs_f64();
+            self.workspace.timeline.note("collisions", clock);
         }
         for step in 0..system.steps_per_period {
             ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
@@ -483,6 +500,7 @@ impl World {
                 system.place_rows(&state.q, &state.v, time, &mut ws.rows);
                 system.update_pairs(ws, state, &around);
                 ws.stages.pairs += clock.elapsed().as_secs_f64();
+                self.workspace.timeline.note("collisions", clock);
             }
             ws.rows_are_the_state = reads_rows;
             let stepped =
@@ -596,6 +614,7 @@ impl World {
             })?;
         }
         self.workspace.field_seconds += clock.elapsed().as_secs_f64();
+        self.workspace.timeline.note("surface", clock);
         Ok(())
     }
 

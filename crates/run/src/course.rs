@@ -135,7 +135,10 @@ impl Course {
             {
                 session.push_hash();
             }
-            frames.write(folder.as_mut(), session, step)?;
+            let clock = Instant::now();
+            if frames.write(folder.as_mut(), session, step)? {
+                options.timeline.note("write", clock);
+            }
             let wall_seconds = session.clock.elapsed().as_secs_f64();
             let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
             let stops = watch(&progress) == Control::Stop && !last;

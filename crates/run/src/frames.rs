@@ -69,17 +69,20 @@ impl Frames {
         })
     }
 
-    /// The frame of a step, if one is due.
+    /// The frame of a step, if one is due; whether it was.
     pub fn write(
         &mut self,
         folder: Option<&mut OutputFolder>,
         session: &mut Session,
         step: u64,
-    ) -> Result<(), OutputError> {
+    ) -> Result<bool, OutputError> {
         self.step = step;
         match folder {
-            Some(folder) if step.is_multiple_of(self.every) => self.write_now(folder, session),
-            _ => Ok(()),
+            Some(folder) if step.is_multiple_of(self.every) => {
+                self.write_now(folder, session)?;
+                Ok(true)
+            }
+            _ => Ok(false),
         }
     }
 

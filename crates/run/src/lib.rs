@@ -27,6 +27,7 @@ pub mod show;
 mod snapshot_file;
 mod sound;
 mod spectrum;
+mod timeline;
 mod trace;
 mod wavering;
 
@@ -34,7 +35,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use souple_engine::steppers::Stability;
-use souple_engine::{Interruption, World};
+use souple_engine::{Interruption, Timeline, World};
 use souple_scene::spec::sound::Sound;
 use souple_scene::{BodyInfo, Scene, SkinInfo};
 use souple_table::readable;
@@ -55,8 +56,9 @@ pub use recording::{Divergence, Hashed, Recording, RecordingError};
 pub use report::{AroundSteps, Report, SkinChange, Status, counts};
 pub use session::{Change, ChangeError, Session, Stepped, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
-pub use trace::{Trace, write_csv};
 pub use souple_haptics::Histogram;
+pub use timeline::{trace_events, write_timeline};
+pub use trace::{Trace, write_csv};
 
 use output::{OutputFolder, Plan};
 
@@ -90,6 +92,8 @@ pub struct Options {
     pub seed: Option<u64>,
     /// What breaks a step off, and with it the run.
     pub interruption: Interruption,
+    /// What has the stages of the run.
+    pub timeline: Timeline,
 }
 
 /// How a run stands, for progress bars and interruption.

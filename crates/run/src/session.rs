@@ -99,6 +99,7 @@ impl Session {
         let Scene { scene_sha256, inputs, warnings, run, .. } = scene;
         let mut world = model.start(state);
         world.heed(&options.interruption);
+        world.note_on(&options.timeline);
         if let Some(snapshot) = &options.resume {
             let period = snapshot.state.period;
             let resumed = world.resume_edited(snapshot.state.clone(), snapshot.commands.clone());

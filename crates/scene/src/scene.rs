@@ -229,7 +229,12 @@ impl SkinInfo {
 
     /// Its surface as committed, with normals.
     pub fn surface(&self, world: &World) -> (Polygons, Vec<Vec3>) {
-        souple_skin::surface_of(self.view(world).grid, &self.skin.lattice)
+        self.surface_in(&world.state().fields[self.field])
+    }
+
+    /// Its surface in a state of its field, with normals.
+    pub fn surface_in(&self, state: &FieldState) -> (Polygons, Vec<Vec3>) {
+        souple_skin::surface_of(self.skin.view(state).grid, &self.skin.lattice)
     }
 
     /// The greatest distance of its surface from that of its target [m]; `None` without one.

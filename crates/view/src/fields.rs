@@ -1,5 +1,7 @@
 //! What bodies may be coloured by, and what arrows may show.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use souple_engine::{CellField, LinkShown, World};
 use souple_io::picture::Colour;
@@ -77,6 +79,24 @@ pub static FIELDS: Table<Field> = Table {
     ],
 };
 
+/// What a picture needs of a field, read from the world.
+pub enum Read {
+    /// Each number that is shown.
+    Numbers(Vec<f32>),
+    /// Of the cells about points, in the order of [`crate::session::Shown::cells_about`].
+    OfCells(Vec<f64>),
+}
+
+impl Read {
+    /// A number at each point, link or triangle that is shown.
+    pub fn colours(self, shown: &Shown, with_inside: bool) -> Vec<f32> {
+        match self {
+            Self::Numbers(numbers) => numbers,
+            Self::OfCells(values) => shown.means(&values, with_inside),
+        }
+    }
+}
+
 /// A vector at each point of a body.
 pub type Vectors = fn(&World, &BodyInfo) -> Vec<Vec3>;
 
@@ -142,49 +162,52 @@ fn contact_forces(world: &World, body: &BodyInfo) -> Vec<Vec3> {
 }
 
 impl Field {
-    /// A value at each point that is shown of a body, or at each of its `links`, or at each triangle of its surface and then
-    /// at each cell if the inside is shown; `None` where it has no such field.
-    pub fn values(
+    /// What there is to a value at each point that is shown of a body, or at each of its `links`, or at each triangle of its surface and
+    /// then at each cell if the inside is shown; `None` where it has no such field.
+    pub fn read(
         &self,
         session: &Session,
         body: &BodyInfo,
         shown: &Shown,
         with_inside: bool,
         links: &[LinkShown],
-    ) -> Option<Vec<f32>> {
+    ) -> Option<Read> {
         let world = &session.world;
         let points = &shown.points[..shown.count(with_inside)];
         match self.source {
             Source::Point(value) => {
-                Some(points.iter().map(|point| value(world, body, *point as usize) as f32).collect())
+                let value = |point: &u32| value(world, body, *point as usize) as f32;
+                Some(Read::Numbers(points.iter().map(value).collect()))
             }
             Source::Influence => {
                 let frames = body.frames.as_ref()?;
-                Some(points.iter().map(|point| frames.influence(*point as usize) as f32).collect())
+                let value = |point: &u32| frames.influence(*point as usize) as f32;
+                Some(Read::Numbers(points.iter().map(value).collect()))
             }
             Source::Cells(value) => {
                 let (solid, at) = world.force_named(body.system, &body.force)?;
                 let of_cell = |cell: &u32| Some(value(&solid.cell_field_at(*cell as usize, &at)?));
                 let about = shown.cells_about(body, with_inside);
                 let values: Option<Vec<f64>> = about.cells.par_iter().map(of_cell).collect();
-                Some(about.means(&values?))
+                Some(Read::OfCells(values?))
             }
             Source::Links(value) if !links.is_empty() => {
-                Some(links.iter().map(|link| value(link) as f32).collect())
+                Some(Read::Numbers(links.iter().map(|link| value(link) as f32).collect()))
             }
             Source::Classes(_) if shown.triangles.is_empty() => None,
             Source::Classes(classes) => {
                 let of_cells = (classes.of)(session, body)?;
                 let outer = body.surface.cells.iter().map(|cell| of_cells[*cell as usize]);
                 let inner = if with_inside { &of_cells[..] } else { &[] };
-                Some(outer.chain(inner.iter().copied()).map(|class| class as f32).collect())
+                let numbers = outer.chain(inner.iter().copied()).map(|class| class as f32);
+                Some(Read::Numbers(numbers.collect()))
             }
             Source::Links(_) => None,
         }
     }
 
-    /// Whether anything in a world has it, as [`Field::values`] would find.
-    pub fn is_in(&self, session: &Session, shown: &[Shown]) -> bool {
+    /// Whether anything in a world has it, as [`Field::read`] would find.
+    pub fn is_in(&self, session: &Session, shown: &[Arc<Shown>]) -> bool {
         let bodies = &session.bodies;
         match self.source {
             Source::Point(_) => !bodies.is_empty(),

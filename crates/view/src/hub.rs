@@ -9,6 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use souple_engine::Timeline;
 
 use crate::protocol::Samples;
 
@@ -36,6 +37,7 @@ pub struct Hub {
     next: AtomicU32,
     samples: Mutex<Samples>,
     health: Mutex<Value>,
+    timeline: Timeline,
 }
 
 /// What waits for one page.
@@ -70,6 +72,16 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Hub {
+    /// One whose threads are noted on a timeline.
+    pub fn noted_on(timeline: Timeline) -> Self {
+        Self { timeline, ..Self::default() }
+    }
+
+    /// Who did what when.
+    pub fn timeline(&self) -> &Timeline {
+        &self.timeline
+    }
+
     pub fn join(&self) -> (PageId, Arc<Outbox>) {
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         let outbox = Arc::new(Outbox { state: Mutex::default(), ready: Condvar::new() });

@@ -1,4 +1,4 @@
-//! What showing a world costs: time of a frame on the thread of the world, frames that a client gets, and how soon it sees
+//! What showing a world costs: time of a frame on the threads of the world and of pictures together, frames that a client gets, and how soon it sees
 //! what it did.
 
 use std::net::{Ipv4Addr, TcpStream};
@@ -41,7 +41,7 @@ pub fn frame_cost(scene: Scene, samples: usize) -> Result<FrameCost, String> {
     let mut seconds = Vec::with_capacity(samples);
     for _ in 0..samples {
         let clock = Instant::now();
-        let frame = stage.frame(1.0);
+        let frame = stage.sketch(1.0).paint();
         bytes = frame.len();
         hub.show(&frame.into());
         seconds.push(clock.elapsed().as_secs_f64());
@@ -55,7 +55,7 @@ pub fn frame_cost(scene: Scene, samples: usize) -> Result<FrameCost, String> {
     let off = |x: &Vec3| x.to_array().iter().map(|c| (f64::from(*c as f32) - c).abs()).fold(0.0, f64::max);
     let size = BoundingBox::of(positions.iter().copied()).diagonal();
     Ok(FrameCost {
-        triangles: stage.shown().iter().map(|shown| shown.triangles.len()).sum(),
+        triangles: stage.shown().map(|shown| shown.triangles.len()).sum(),
         seconds,
         bytes,
         error: positions.iter().map(off).fold(0.0, f64::max) / size,
@@ -80,6 +80,7 @@ pub fn served(scene: Scene, duration: Duration, samples: usize) -> Result<Served
         port: 0,
         scene_name: "measured".to_owned(),
         catalogue: Catalogue::default(),
+        timeline: souple_engine::Timeline::default(),
     };
     let viewer = Viewer::open(scene, options).map_err(|error| error.to_string())?;
     let mut client = Client::open(&viewer)?;

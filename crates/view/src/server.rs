@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
+use souple_engine::Timeline;
 use souple_scene::Scene;
 
 use crate::catalogue::Catalogue;
@@ -36,6 +37,8 @@ pub struct Options {
     pub scene_name: String,
     /// Other scenes to choose from.
     pub catalogue: Catalogue,
+    /// What has the stages of all threads.
+    pub timeline: Timeline,
 }
 
 /// Why there is no viewer.
@@ -78,7 +81,7 @@ impl Viewer {
         let local = listener.local_addr().map_err(bind)?;
         let guard = Guard::new(local).map_err(ViewError::Token)?;
         let address = guard.address();
-        let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), Inputs::new(INPUTS_MAX));
+        let (hub, (inputs, inbox)) = (Arc::new(Hub::noted_on(options.timeline)), Inputs::new(INPUTS_MAX));
         let catalogue = options.catalogue;
         let live = Live::new(scene, options.scene_name, catalogue, Arc::clone(&hub), inputs.clone())
             .map_err(ViewError::World)?;

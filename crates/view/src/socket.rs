@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::{Role, WebSocket, WebSocketConfig};
@@ -151,7 +151,12 @@ fn write(stream: &TcpStream, outbox: &Outbox, hub: &Hub) {
     loop {
         let sent = match outbox.next(hub, PING_AFTER) {
             Next::Send(Outgoing::Text(text)) => socket.send(Message::text(&*text)),
-            Next::Send(Outgoing::Binary(bytes)) => socket.send(Message::Binary(Bytes::from_owner(bytes))),
+            Next::Send(Outgoing::Binary(bytes)) => {
+                let began = Instant::now();
+                let sent = socket.send(Message::Binary(Bytes::from_owner(bytes)));
+                hub.timeline().note("send", began);
+                sent
+            }
             Next::Send(Outgoing::Raw(bytes)) => {
                 let mut stream = stream;
                 stream.write_all(&bytes).map_err(Error::Io)

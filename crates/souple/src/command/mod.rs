@@ -27,6 +27,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
+use souple_engine::Timeline;
 use souple_formal::law::LawError;
 use souple_models::materials::TextLaw;
 
@@ -407,6 +408,23 @@ pub fn scene_path(path: &str) -> PathBuf {
 /// A number of threads on the command line.
 pub fn thread_count(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "expected a whole number, 1 to 1024".to_owned())
+}
+
+/// What keeps the stages of threads, where a file is to tell of them.
+pub fn timeline_of(file: Option<&PathBuf>) -> Timeline {
+    file.map_or_else(Timeline::default, |_| Timeline::begin())
+}
+
+/// Writes the stages of threads where they are asked for; a file that cannot be written makes the work fail, and takes nothing from what else it
+/// came to.
+pub fn write_trace(file: Option<&PathBuf>, timeline: &Timeline, end: End) -> End {
+    match file.map(|path| souple_run::write_timeline(path, timeline)) {
+        Some(Err(error)) => {
+            print_note(format_args!("error: the trace is lost: {error}"));
+            End::Failed
+        }
+        Some(Ok(())) | None => end,
+    }
 }
 
 /// Sets the number of threads of the whole process.

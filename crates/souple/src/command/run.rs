@@ -9,7 +9,7 @@ use souple_table::counted;
 use super::progress::Meter;
 use super::{
     End, Refusal, count, interruption, print_json, print_line, print_note, read_scene, scene_path, seconds,
-    use_threads,
+    timeline_of, use_threads, write_trace,
 };
 
 #[derive(clap::Args)]
@@ -52,6 +52,9 @@ pub struct Arguments {
     /// Writes a recording that `souple replay` repeats bit for bit, from the scene's start
     #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     record: Option<PathBuf>,
+    /// Writes who did what when, as trace events that chrome://tracing and Perfetto draw
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Whether an expectation that fails ends with status 1; `strict` by default, `warn` where --set changes the scene
     #[arg(long, value_enum)]
     expect: Option<Strictness>,
@@ -86,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         scene_name: scene_path(&arguments.scene).display().to_string(),
         seed: arguments.seed,
         interruption: interruption::heed(),
+        timeline: timeline_of(arguments.trace.as_ref()),
         ..Options::default()
     };
     if let Some(path) = &arguments.resume {
@@ -100,7 +104,8 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         quiet: arguments.quiet,
         expect: arguments.expect.unwrap_or(usual),
     };
-    Ok(conclude(&outcome, &manner))
+    let end = conclude(&outcome, &manner);
+    Ok(write_trace(arguments.trace.as_ref(), &options.timeline, end))
 }
 
 fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot, Refusal> {

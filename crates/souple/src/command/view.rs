@@ -1,13 +1,16 @@
 //! `souple view`: a scene live in the browser.
 
 use std::net::{IpAddr, Ipv4Addr};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
 
+use souple_engine::Timeline;
 use souple_scene::Scene;
 use souple_view::{Catalogue, Options, ViewError, Viewer};
 
-use super::{End, Refusal, print_line, print_note, read_scene, scene_path, use_threads};
+use super::{
+    End, Refusal, print_line, print_note, read_scene, scene_path, timeline_of, use_threads, write_trace,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -25,6 +28,9 @@ pub struct Arguments {
     /// Worker threads; the results do not depend on it
     #[arg(long)]
     threads: Option<usize>,
+    /// Writes at the end who did what when, as trace events that chrome://tracing and Perfetto draw
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
 }
 
 const PORT: u16 = 7878;
@@ -39,20 +45,29 @@ pub fn view(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::work("page", format!("this program was built without the page: {problem}")));
     }
     use_threads(arguments.threads)?;
-    let viewer = open(arguments, arguments.port)?.map_err(refuse)?;
+    let timeline = timeline_of(arguments.trace.as_ref());
+    let viewer = open(arguments, arguments.port, &timeline)?.map_err(refuse)?;
     // the first line is the address
     print_line(viewer.address());
     print_note("open it in a browser; Ctrl-C ends");
-    watch(viewer)
+    let end = watch(viewer)?;
+    Ok(write_trace(arguments.trace.as_ref(), &timeline, end))
 }
 
 /// Greets, shows the default scene, and says what to try next: what the program does without arguments. Where the port
 /// is taken any other serves.
 pub fn view_default_scene() -> Result<End, Refusal> {
-    let arguments =
-        Arguments { scene: None, settings: Vec::new(), port: PORT, host: LOOPBACK, threads: None };
-    let viewer = match open(&arguments, arguments.port)? {
-        Err(ViewError::Bind { .. }) => open(&arguments, 0)?,
+    let arguments = Arguments {
+        scene: None,
+        settings: Vec::new(),
+        port: PORT,
+        host: LOOPBACK,
+        threads: None,
+        trace: None,
+    };
+    let timeline = Timeline::default();
+    let viewer = match open(&arguments, arguments.port, &timeline)? {
+        Err(ViewError::Bind { .. }) => open(&arguments, 0, &timeline)?,
         opened => opened,
     };
     let viewer = viewer.map_err(refuse)?;
@@ -67,13 +82,16 @@ pub fn view_default_scene() -> Result<End, Refusal> {
     watch(viewer)
 }
 
-fn open(arguments: &Arguments, port: u16) -> Result<Result<Viewer, ViewError>, Refusal> {
+fn open(arguments: &Arguments, port: u16, timeline: &Timeline) -> Result<Result<Viewer, ViewError>, Refusal> {
     let (scene, scene_name) = read(arguments)?;
     for warning in &scene.warnings {
         print_note(format_args!("warning: {warning}"));
     }
     let catalogue = Catalogue::of_folder(Path::new(SCENES));
-    Ok(Viewer::open(scene, Options { host: arguments.host, port, scene_name, catalogue }))
+    Ok(Viewer::open(
+        scene,
+        Options { host: arguments.host, port, scene_name, catalogue, timeline: timeline.clone() },
+    ))
 }
 
 /// Until somebody ends it.

@@ -6,7 +6,7 @@ use souple_math::{Mat3, Vec3};
 use super::{Kind, header, put_f32, put_u32, put_vector};
 
 /// The world at a moment, as pages see it.
-pub struct Frame<'a> {
+pub struct Frame {
     pub scene: u32,
     pub number: u32,
     /// World periods since the start.
@@ -22,7 +22,7 @@ pub struct Frame<'a> {
     pub hands: Vec<HandShown>,
     /// Where each bounded obstacle stands: rotation and origin.
     pub poses: Vec<(Mat3, Vec3)>,
-    pub bodies: Vec<FrameBody<'a>>,
+    pub bodies: Vec<FrameBody>,
     pub skins: Vec<FrameSkin>,
     /// Ends of the straight pieces of all contours [m].
     pub contours: Vec<[Vec3; 2]>,
@@ -50,9 +50,8 @@ pub enum Holds {
 }
 
 /// A body in a frame.
-pub struct FrameBody<'a> {
-    pub positions: &'a mut dyn Iterator<Item = Vec3>,
-    pub point_count: usize,
+pub struct FrameBody {
+    pub positions: Vec<Vec3>,
     /// Number of a field, and its values at each point or of each link.
     pub fields: Vec<(u32, Vec<f32>)>,
     /// Number of a kind of arrows, and its vector at each point.
@@ -78,10 +77,10 @@ fn state_byte(state: LinkState) -> u8 {
     }
 }
 
-impl Frame<'_> {
+impl Frame {
     pub fn encode(self) -> Vec<u8> {
         let per_point = |body: &FrameBody| 12 + 4 * body.fields.len() + 12 * body.arrows.len();
-        let points: usize = self.bodies.iter().map(|body| body.point_count * per_point(body)).sum();
+        let points: usize = self.bodies.iter().map(|body| body.positions.len() * per_point(body)).sum();
         let mut bytes = header(Kind::Frame, self.bodies.len() as u16, self.scene);
         bytes.reserve(256 + 64 * self.poses.len() + points);
         bytes.extend(self.period.to_le_bytes());
@@ -113,17 +112,17 @@ impl Frame<'_> {
     }
 }
 
-impl FrameBody<'_> {
+impl FrameBody {
     fn encode(self, bytes: &mut Vec<u8>) {
         let counts = [
-            self.point_count,
+            self.positions.len(),
             self.fields.len(),
             self.arrows.len(),
             self.link_states.len(),
             self.frames.len(),
         ];
         counts.into_iter().for_each(|count| put_u32(bytes, count));
-        self.positions.for_each(|position| put_vector(bytes, position));
+        self.positions.iter().for_each(|position| put_vector(bytes, *position));
         for (field, values) in &self.fields {
             put_u32(bytes, *field as usize);
             put_u32(bytes, values.len());

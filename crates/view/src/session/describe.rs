@@ -127,7 +127,7 @@ impl Stage {
         json!({
             "name": name, "title": build.title(self.session()), "summary": summary, "unit": build.unit,
             "of": build.of(), "classes": classes,
-            "is_here": build.is_in(self.session(), self.shown()),
+            "is_here": build.is_in(self.session(), self.shown_to_keep()),
         })
     }
 

@@ -5,9 +5,11 @@ mod describe;
 mod hands;
 mod inputs;
 mod pace;
+mod painter;
 mod picture;
 mod question;
 mod shown;
+mod sketch;
 mod stage;
 
 use std::sync::Arc;
@@ -29,6 +31,7 @@ use crate::hub::{Hub, PageId};
 use crate::protocol::{Wish, document, refusal};
 use compile::{Compiled, Compiler, Purpose};
 use pace::Pace;
+use painter::Painter;
 
 /// Pictures a second, at most.
 const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 60);
@@ -68,6 +71,7 @@ pub struct Live {
     interruption: Interruption,
     compiler: Compiler,
     stage: Stage,
+    painter: Painter,
     mode: Mode,
     pace: Pace,
     /// What this thread has worked since the last period was ready, of which budgets take account.
@@ -103,6 +107,8 @@ impl Live {
     ) -> Result<Self, String> {
         let interruption = inputs.interruption().clone();
         let stage = Stage::new(scene, name, 0, &interruption, &hub)?;
+        let painter = Painter::start(Arc::clone(&hub));
+        let painter = painter.map_err(|error| format!("no thread for pictures: {error}"))?;
         let now = Instant::now();
         let live = Self {
             hub,
@@ -110,6 +116,7 @@ impl Live {
             interruption,
             compiler: Compiler::new(inputs),
             stage,
+            painter,
             mode: Mode::Waiting,
             pace: Pace::new(now),
             worked: Duration::ZERO,
@@ -200,10 +207,14 @@ impl Live {
         // a picture that is late by less than one keeps the beat; a later one does not hurry the next
         let next = self.next_frame + FRAME;
         self.next_frame = if next > now { next } else { now + FRAME };
+        if self.painter.is_behind() {
+            return;
+        }
         self.is_changed = false;
         if self.hub.page_count() > 0 {
             let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
-            self.hub.show(&self.stage.frame(factor).into());
+            self.painter.paint(self.stage.sketch(factor));
+            self.hub.timeline().note("sketch", now);
             if self.mode == Mode::Playing {
                 self.worked += now.elapsed();
             }

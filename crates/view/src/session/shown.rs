@@ -80,6 +80,13 @@ impl Shown {
         self.all_cells.get_or_init(|| CellsAbout::new(&body.mesh, &self.points))
     }
 
+    /// The mean at each point that is drawn of what the cells about it have; `values` are those of [`Shown::cells_about`].
+    pub fn means(&self, values: &[f64], with_inside: bool) -> Vec<f32> {
+        let about = if with_inside { self.all_cells.get() } else { Some(&self.outer_cells) };
+        // who has values has asked for the cells
+        about.map_or_else(Vec::new, |about| about.means(values))
+    }
+
     /// The number that each point of the mesh has among `points`.
     fn numbers(&self, mesh: &Mesh) -> Vec<u32> {
         let mut numbers = vec![0; mesh.points.len()];
@@ -156,7 +163,7 @@ impl CellsAbout {
     }
 
     /// The mean at each point of what the cells about it have; `values` are those of `cells`.
-    pub fn means(&self, values: &[f64]) -> Vec<f32> {
+    fn means(&self, values: &[f64]) -> Vec<f32> {
         let mean = |range: &[u32]| {
             let about = &self.of_points[range[0] as usize..range[1] as usize];
             let sum: f64 = about.iter().map(|cell| values[*cell as usize]).sum();

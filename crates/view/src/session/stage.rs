@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 
 use serde_json::json;
 use souple_engine::hand::is_hand_name;
@@ -32,7 +33,7 @@ pub struct Stage {
     pub(super) origin: Origin,
     view: PictureView,
     obstacles: Vec<Obstacle>,
-    shown: Vec<Shown>,
+    shown: Vec<Arc<Shown>>,
     hands: Hands,
     /// The period for which they were led last.
     led: Option<u64>,
@@ -115,6 +116,7 @@ impl Stage {
         let options = Options { scene_name: name, interruption: interruption.clone(), ..Options::default() };
         let mut session = Session::start(scene, &options).map_err(|error| error.to_string())?;
         session.forecast();
+        session.world.note_on(hub.timeline());
         let columns = ENERGY_COLUMNS.len()
             + session.probes.iter().map(|probe| if probe.gives_vector() { 3 } else { 1 }).sum::<usize>();
         let period = session.world.model().period;
@@ -124,7 +126,7 @@ impl Stage {
             origin: Origin::File,
             view,
             obstacles: scenery_of(session.world.model()),
-            shown: session.bodies.iter().map(Shown::new).collect(),
+            shown: session.bodies.iter().map(|body| Arc::new(Shown::new(body))).collect(),
             hands: Hands::default(),
             led: None,
             looks: Looks::default(),
@@ -214,7 +216,12 @@ impl Stage {
         &self.obstacles
     }
 
-    pub fn shown(&self) -> &[Shown] {
+    pub fn shown(&self) -> impl ExactSizeIterator<Item = &Shown> + Clone {
+        self.shown.iter().map(Arc::as_ref)
+    }
+
+    /// The same, to be kept while the stage goes on.
+    pub fn shown_to_keep(&self) -> &[Arc<Shown>] {
         &self.shown
     }
 
@@ -458,7 +465,7 @@ impl Stage {
 
     /// What a tool may meet of the bodies of a system.
     fn surface_of(&self, system: usize) -> TouchedSurface {
-        let bodies = self.session.bodies.iter().zip(&self.shown);
+        let bodies = self.session.bodies.iter().zip(self.shown());
         TouchedSurface::of(bodies.filter(|(body, _)| body.system == system))
     }
 

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use souple_engine::Timeline;
 use souple_run::Recording;
 use souple_view::{Catalogue, Options, SUBPROTOCOL, Viewer};
 use tungstenite::client::IntoClientRequest;
@@ -64,7 +65,16 @@ impl World {
         Self::read(SCENE, settings)
     }
 
+    /// The same, with the stages of its threads on a timeline.
+    pub fn noted_on(text: &str, timeline: &Timeline) -> Self {
+        Self::start(text, &[], timeline.clone())
+    }
+
     fn read(text: &str, settings: &[&str]) -> Self {
+        Self::start(text, settings, Timeline::default())
+    }
+
+    fn start(text: &str, settings: &[&str], timeline: Timeline) -> Self {
         let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
         let scene = souple_scene::read_text("bar", text, Path::new("."), &settings)
             .unwrap_or_else(|error| panic!("{error}"));
@@ -73,6 +83,7 @@ impl World {
             port: 0,
             scene_name: "bar".to_owned(),
             catalogue: Catalogue::default(),
+            timeline,
         };
         let viewer = Viewer::open(scene, options).unwrap();
         let host = viewer.address().trim_start_matches("http://").trim_end_matches('/').to_owned();

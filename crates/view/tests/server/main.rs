@@ -2,4 +2,5 @@
 
 mod client;
 mod clients;
+mod overlap;
 mod shown;
