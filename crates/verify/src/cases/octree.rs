@@ -56,6 +56,14 @@ pub const STRUCK: &[&str] = &[
     "run.duration=\"2 s\"",
 ];
 
+/// All levels of the source's rod, whose coarsest is one row.
+const FROM_FOUR: &[&str] = &[
+    "bodies.rod.octree.levels=3",
+    "bodies.rod.octree.refine=0.006",
+    "bodies.rod.octree.coarsen=0.0048",
+    "run.duration=\"0.4 s\"",
+];
+
 const ROD_STRUCK: Case = Case {
     capabilities: &["DEB-14"],
     settings: STRUCK,
@@ -542,6 +550,26 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(0.1),
         source: "specification, V-07: within 10 %",
         mutation: r#"bodies.rod.octree.fixed="0""#,
+        ..ROD
+    },
+    Case {
+        id: "octree_rod_begins_with_four",
+        what: "particles at work as the rod of three levels, 4, 32 and 256, held by its end face, begins to sag",
+        settings: FROM_FOUR,
+        reading: Reading::last("active").after(0),
+        reference: 4.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, V-07: 4 particles at the start",
+        mutation: "bodies.rod.octree.levels=2",
+        ..ROD
+    },
+    Case {
+        id: "octree_rod_from_four",
+        what: "sag of the same rod, against that of the finest particles everywhere",
+        settings: FROM_FOUR,
+        tolerance: Tolerance::Relative(0.1),
+        source: "specification, V-07: the tip within 10 % of the finest",
+        mutation: r#"bodies.rod.octree.fixed="1""#,
         ..ROD
     },
     Case {
