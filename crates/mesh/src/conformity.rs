@@ -13,7 +13,7 @@ use crate::{Aabb, AabbTree, Cell, Feature, Mesh, TriangleSurface, closest_point_
 /// What [`Mesh::conformity`] found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Conformity {
-    /// Pairs of cells that lie on the same side of a common face, lower number first.
+    /// Pairs of volume cells that lie on the same side of a common face, lower number first.
     pub overlapping: Vec<[u32; 2]>,
     /// Cells of quadrilaterals on whose other side two triangles are, and the cells of those.
     pub split: Vec<(u32, [u32; 2])>,
@@ -192,6 +192,10 @@ impl Mesh {
 
     /// Cells that go around a common face in the same direction, each pair once.
     fn overlapping_cells(&self) -> Vec<[u32; 2]> {
+        // cells of surfaces lie on no side of their edges before they are turned to face one way
+        if self.dimension() != 3 {
+            return Vec::new();
+        }
         let mut uses: Vec<([u32; 4], [u32; 4], u32)> = Vec::new();
         for (number, cell) in self.cells().enumerate() {
             for face in 0..cell.kind.faces().len() {

@@ -26,6 +26,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("cohesive_heap", include_str!("../../../scenes/cohesive_heap/scene.toml")),
     ("collateral", include_str!("../../../scenes/collateral/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
+    ("crooked_patch", include_str!("../../../scenes/crooked_patch/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
     ("dough", include_str!("../../../scenes/dough/scene.toml")),
     ("drops_on_a_floor", include_str!("../../../scenes/drops_on_a_floor/scene.toml")),

@@ -4,6 +4,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Value, Values};
 
 use super::cut::{Cut, in_order, middle, size_in_order};
+use super::disorder::Disorder;
 use super::grid::{Diagonals, Grid};
 use super::{Build, GeneratorEntry};
 use crate::{Mesh, MeshError};
@@ -17,7 +18,7 @@ pub(super) static BAR: GeneratorEntry = GeneratorEntry {
     name: "bar",
     summary: "bar along x from the origin; groups x_min, x_max, y_min, …",
     source: "Kuhn 1960 for the tetrahedra",
-    parameters: &[SIZE, CELLS, Cut::PARAMETER_OF_GRIDS, ORIGIN],
+    parameters: &[SIZE, CELLS, Cut::PARAMETER_OF_GRIDS, ORIGIN, Disorder::PARAMETER, Disorder::SEED],
     build: BUILD,
 };
 
@@ -25,7 +26,7 @@ pub(super) static BOX: GeneratorEntry = GeneratorEntry {
     name: "box",
     summary: "box from its lowest corner; groups x_min, x_max, y_min, …",
     source: "Kuhn 1960 for the tetrahedra",
-    parameters: &[SIZE, CELLS, Cut::PARAMETER_OF_GRIDS, ORIGIN],
+    parameters: &[SIZE, CELLS, Cut::PARAMETER_OF_GRIDS, ORIGIN, Disorder::PARAMETER, Disorder::SEED],
     build: BUILD,
 };
 
@@ -34,7 +35,8 @@ const BUILD: Build = Build { size: |values| Ok(size_in_order(values, grid(values
 fn grid(values: &Values) -> Result<Grid, MeshError> {
     let is_mirrored = values.text("element") == "tet4_mirrored";
     let diagonals = if is_mirrored { Diagonals::Mirrored } else { Diagonals::Parallel };
-    Ok(Grid::new("cells", values.vector("cells"), Cut::from_values(values))?.with_diagonals(diagonals))
+    let grid = Grid::new("cells", values.vector("cells"), Cut::from_values(values))?;
+    Ok(grid.with_diagonals(diagonals).with_disorder(Disorder::from_values(values)))
 }
 
 fn cuboid(values: &Values) -> Result<Mesh, MeshError> {

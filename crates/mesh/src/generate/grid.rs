@@ -9,6 +9,7 @@ use souple_math::Vec3;
 use souple_table::Value;
 
 use super::cut::{BASE_X_MAX, BASE_Y_MAX, BASE_Z_MAX, Blocks, CORNERS, Cut, Parity};
+use super::disorder::Disorder;
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) struct Grid {
@@ -18,6 +19,7 @@ pub(super) struct Grid {
     /// The face of each cube that its prisms lie towards. Corners are numbered as `prisms` has them: towards x both are one.
     prism_end: usize,
     diagonals: Diagonals,
+    disorder: Disorder,
 }
 
 /// Along which diagonals cubes are cut in tetrahedra.
@@ -29,8 +31,13 @@ pub(super) enum Diagonals {
 }
 
 impl Grid {
-    const START: Self =
-        Self { cells: [1; 3], zones: Vec::new(), prism_end: BASE_X_MAX, diagonals: Diagonals::Parallel };
+    const START: Self = Self {
+        cells: [1; 3],
+        zones: Vec::new(),
+        prism_end: BASE_X_MAX,
+        diagonals: Diagonals::Parallel,
+        disorder: Disorder::NONE,
+    };
 
     /// # Errors
     /// Counts that are not whole numbers of at least one, or too many cells.
@@ -73,6 +80,11 @@ impl Grid {
         Self { diagonals, ..self }
     }
 
+    /// The same with its points moved inside, centres of cubes too.
+    pub(super) fn with_disorder(self, disorder: Disorder) -> Self {
+        Self { disorder, ..self }
+    }
+
     pub(super) fn size(&self) -> MeshSize {
         let corners = self.cells.iter().map(|count| *count as u64 + 1).product::<u64>();
         let of_layer = (self.cells[1] * self.cells[2]) as u64;
@@ -86,12 +98,16 @@ impl Grid {
     /// The mesh with its points at `place(ξ)`, `ξ` in the unit cube.
     pub(super) fn mesh(&self, place: impl Fn(Vec3) -> Vec3) -> Mesh {
         let [nx, ny, nz] = self.cells;
-        let unit = |i: f64, j: f64, k: f64| Vec3::new(i / nx as f64, j / ny as f64, k / nz as f64);
+        let unit = |at: Vec3| Vec3::new(at.x / nx as f64, at.y / ny as f64, at.z / nz as f64);
+        let is_inside = |at: [usize; 3]| (0..3).all(|axis| (1..self.cells[axis]).contains(&at[axis]));
+        let mut disorder = self.disorder;
         let mut points = Vec::with_capacity((nx + 1) * (ny + 1) * (nz + 1));
         for k in 0..=nz {
             for j in 0..=ny {
                 for i in 0..=nx {
-                    points.push(place(unit(i as f64, j as f64, k as f64)));
+                    let corner = Vec3::new(i as f64, j as f64, k as f64);
+                    let moved = if is_inside([i, j, k]) { corner + disorder.next_in_space() } else { corner };
+                    points.push(place(unit(moved)));
                 }
             }
         }
@@ -101,7 +117,8 @@ impl Grid {
                 for i in 0..nx {
                     let corners = CORNERS.map(|[a, b, c]| self.point(i + a, j + b, k + c));
                     let mut centre = || {
-                        points.push(place(unit(i as f64 + 0.5, j as f64 + 0.5, k as f64 + 0.5)));
+                        let middle = Vec3::new(i as f64 + 0.5, j as f64 + 0.5, k as f64 + 0.5);
+                        points.push(place(unit(middle + disorder.next_in_space())));
                         points.len() as u32 - 1
                     };
                     match self.zones[i] {

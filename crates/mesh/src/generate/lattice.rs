@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
+use super::disorder::Disorder;
 use super::{Build, GeneratorEntry};
 use crate::{CellBlock, ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
@@ -16,14 +17,8 @@ pub(super) static LATTICE: GeneratorEntry = GeneratorEntry {
         Parameter::number("edge", "m", Range::POSITIVE, "of the triangles"),
         Parameter::integer("cells_along", Range::at_least(1.0), "number of edges along x"),
         Parameter::integer("rows", Range::at_least(1.0), "number of rows of triangles along y"),
-        Parameter::number(
-            "disorder",
-            "",
-            Range::closed(0.0, 0.25),
-            "how far points inside are moved at most, at random, over the edge; up to 0.12 no angle is obtuse",
-        )
-        .or(Value::Number(0.0)),
-        Parameter::integer("seed", Range::NOT_NEGATIVE, "which of the random moves").or(Value::Integer(1)),
+        Disorder::OF_TRIANGLES,
+        Disorder::SEED,
         Parameter::vector("origin", "m", "the first point of the lowest row").or(Value::Vector([0.0; 3])),
     ],
     build: Build { size: lattice_size, mesh: lattice },
@@ -50,7 +45,7 @@ fn lattice(values: &Values) -> Result<Mesh, MeshError> {
     let height = 0.75_f64.sqrt();
     let point = |i: u64, j: u64| (i + (along + 1) * j) as u32;
     let is_border = |i: u64, j: u64| i == 0 || j == 0 || i == along || j == rows;
-    let mut moves = Moves { state: values.integer("seed") as u64 };
+    let mut disorder = Disorder::from_values(values);
     let mut points = Vec::with_capacity(((along + 1) * (rows + 1)) as usize);
     let mut border = Group::default();
     for j in 0..=rows {
@@ -60,7 +55,7 @@ fn lattice(values: &Values) -> Result<Mesh, MeshError> {
                 border.points.push(point(i, j));
                 place
             } else {
-                place + moves.next() * values.number("disorder")
+                place + disorder.next_in_plane()
             };
             points.push(origin + moved * edge);
         }
@@ -81,27 +76,6 @@ fn lattice(values: &Values) -> Result<Mesh, MeshError> {
         ("y_max".to_owned(), row(rows)),
     ]);
     Ok(Mesh { points, blocks: vec![cells], facet_blocks: Vec::new(), groups })
-}
-
-/// Points of the unit disc, evenly spread over it, the same for the same seed.
-struct Moves {
-    state: u64,
-}
-
-impl Moves {
-    /// Evenly from 0 to 1 (Steele, Lea & Flood 2014, "Fast splittable pseudorandom number generators").
-    fn uniform(&mut self) -> f64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.state;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn next(&mut self) -> Vec3 {
-        let (radius, angle) = (self.uniform().sqrt(), std::f64::consts::TAU * self.uniform());
-        Vec3::new(radius * libm::cos(angle), radius * libm::sin(angle), 0.0)
-    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ mod ball;
 mod cuboid;
 mod cut;
 mod cylinder;
+mod disorder;
 mod grid;
 mod lattice;
 mod parts;

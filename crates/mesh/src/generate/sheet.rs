@@ -6,6 +6,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
 use super::cut::{in_order, last_place, middle};
+use super::disorder::Disorder;
 use super::{Build, GeneratorEntry};
 use crate::{CellBlock, ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize, NodePlace};
 
@@ -25,6 +26,8 @@ pub(super) static SHEET: GeneratorEntry = GeneratorEntry {
         )
         .or(Value::Text("tri3")),
         Parameter::vector("origin", "m", "the corner of least x, y").or(Value::Vector([0.0; 3])),
+        Disorder::PARAMETER,
+        Disorder::SEED,
     ],
     build: Build { size: sheet_size, mesh: sheet },
 };
@@ -92,11 +95,15 @@ fn sheet(values: &Values) -> Result<Mesh, MeshError> {
     let Pattern { along: nx, across: ny, first_cut } = Pattern::of(values)?;
     let (length, width) = (values.number("length"), values.number("width"));
     let origin = Vec3::from_array(values.vector("origin"));
+    let mut disorder = Disorder::from_values(values);
     let mut points = Vec::with_capacity(((nx + 1) * (ny + 1)) as usize);
     for j in 0..=ny {
         for i in 0..=nx {
-            let (x, y) = (i as f64 / nx as f64, j as f64 / ny as f64);
-            points.push(origin + Vec3::new(length * x, width * y, 0.0));
+            let corner = Vec3::new(i as f64, j as f64, 0.0);
+            let is_inside = (1..nx).contains(&i) && (1..ny).contains(&j);
+            let moved = if is_inside { corner + disorder.next_in_plane() } else { corner };
+            points
+                .push(origin + Vec3::new(length * (moved.x / nx as f64), width * (moved.y / ny as f64), 0.0));
         }
     }
     let point = |i: u64, j: u64| (i + (nx + 1) * j) as u32;

@@ -392,6 +392,7 @@ fn sheets_and_lines() {
         assert_eq!(size, MeshSize { points: mesh.points.len() as u64, cells: mesh.cell_count() as u64 });
         assert!(mesh.validate().unwrap().messages().is_empty() && mesh.face_up().is_empty());
         assert!((mesh.volume() - 1.0).abs() < 1e-14, "{element} {}", mesh.volume());
+        assert_eq!(mesh.conformity(), crate::Conformity::default(), "{element}");
         mesh.faces().conforming().unwrap();
         assert_eq!(mesh.faces().boundary.len(), 16);
         assert!((mesh.boundary_surface().area() - 1.0).abs() < 1e-14);
@@ -425,5 +426,101 @@ fn mirrored_tetrahedra_conform() {
         let mesh = bar([2.0, 2.0, 2.0], element).unwrap();
         let meets = mesh.cells().filter(|cell| cell.nodes.contains(&13)).count();
         assert_eq!(meets, cells, "{element}");
+    }
+}
+
+fn disordered(generator: &str, element: &'static str, disorder: f64, seed: i64) -> Result<Mesh, MeshError> {
+    let values = Values::new()
+        .with("element", Value::Text(element))
+        .with("disorder", Value::Number(disorder))
+        .with("seed", Value::Integer(seed));
+    let values = match generator {
+        "sheet" => values
+            .with("length", Value::Number(2.0))
+            .with("width", Value::Number(0.5))
+            .with("cells_along", Value::Integer(8))
+            .with("cells_across", Value::Integer(6)),
+        _ => {
+            values.with("size", Value::Vector([2.0, 0.5, 1.0])).with("cells", Value::Vector([6.0, 3.0, 4.0]))
+        }
+    };
+    generate(generator, values)
+}
+
+const DISORDERED: [(&str, &[&str]); 2] = [
+    (
+        "box",
+        &[
+            "tet4",
+            "tet4_centred",
+            "tet4_mirrored",
+            "hex8",
+            "prism6",
+            "pyramid5",
+            "mixed",
+            "tet10",
+            "hex20",
+            "hex27",
+            "prism15",
+            "pyramid13",
+            "mixed_quadratic",
+        ],
+    ),
+    ("sheet", &["tri3", "tri6", "quad4", "quad8", "quad9", "mixed", "mixed_quadratic"]),
+];
+
+/// As far as points may be moved no cell of any kind is turned over, in part either; sides stay, cells conform and fill what they
+/// filled, and edges are straight.
+#[test]
+fn disorder_turns_no_cell_over() {
+    for (generator, elements) in DISORDERED {
+        for element in elements {
+            let regular = disordered(generator, element, 0.0, 1).unwrap();
+            let edges =
+                if generator == "sheet" { [0.25, 1.0 / 12.0, 1.0] } else { [1.0 / 3.0, 0.5 / 3.0, 0.25] };
+            for seed in 0..10 {
+                let mut mesh = disordered(generator, element, 0.2, seed).unwrap();
+                let repairs = mesh.validate().unwrap();
+                assert_eq!(repairs, crate::Repairs { component_count: 1, ..Default::default() }, "{element}");
+                let worst = mesh.quality().iter().map(|cell| cell.scaled_jacobian).fold(1.0, f64::min);
+                assert!(worst > 0.0, "{element} {seed}: {worst}");
+                // hundreds of cells, each rounded to 1e-16
+                assert!((mesh.volume() - 1.0).abs() < 1e-13, "{element} {}", mesh.volume());
+                mesh.faces().conforming().unwrap();
+                let mut most: f64 = 0.0;
+                for (before, after) in regular.points.iter().zip(&mesh.points) {
+                    let by = *after - *before;
+                    let by = Vec3::new(by.x / edges[0], by.y / edges[1], by.z / edges[2]);
+                    most = most.max(by.length());
+                }
+                assert!(most > 0.1 && most <= 0.2 * (1.0 + 1e-14), "{element}: {most}");
+                for group in regular.groups.values() {
+                    for point in &group.points {
+                        assert_eq!(mesh.points[*point as usize], regular.points[*point as usize]);
+                    }
+                }
+                for cell in mesh.cells() {
+                    let at = |node: usize| mesh.points[cell.nodes[node] as usize];
+                    let middles = cell.kind.middles().iter().zip(cell.kind.corner_count()..);
+                    for (ends, node) in middles.filter(|(ends, _)| ends.len() == 2) {
+                        let [a, b] = [0, 1].map(|end| at(usize::from(ends[end])));
+                        assert_eq!(at(node), super::cut::middle([a, b]), "{element}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The same numbers give the same mesh, another seed another one, and more than is safe is refused.
+#[test]
+fn disorder_is_the_same_again() {
+    let made = |amount, seed| disordered("bar", "mixed", amount, seed).unwrap().points;
+    assert_eq!(made(0.1, 1), made(0.1, 1));
+    assert_ne!(made(0.1, 1), made(0.1, 2));
+    assert_eq!(made(0.0, 1), made(0.0, 2));
+    for generator in ["bar", "sheet"] {
+        let refused = disordered(generator, "mixed", 0.21, 1).unwrap_err().to_string();
+        assert!(refused.contains("`disorder`") && refused.contains("0.2"), "{refused}");
     }
 }

@@ -9,6 +9,7 @@ mod conditional;
 mod constraints;
 mod contact;
 mod courses;
+mod crooked_patch;
 mod derivations;
 mod elements;
 mod energy;
@@ -58,6 +59,9 @@ pub use octree::STRUCK as STRUCK_ROD;
 /// Every case, subject by subject, in order of cost within a subject.
 pub const TABLES: &[&[Case]] = &[
     patch::CASES,
+    crooked_patch::SOLIDS,
+    crooked_patch::SHEETS,
+    crooked_patch::LAWS,
     traction::CASES,
     traction::RESOLUTIONS,
     rubber::CASES,

@@ -1,7 +1,7 @@
 //! Deformed alike everywhere: the patch test on meshes of all volume elements, linear and quadratic, and of the surface elements in
 //! plane strain, and its stresses and energies.
 //!
-//! Cells are regular here, which tries that elements meet; `models/tests` has crooked ones.
+//! Cells are regular here, which tries that elements meet; `crooked_patch` has crooked ones.
 
 use super::bar::{COROTATIONAL, LINEAR, NEO_HOOKEAN, ST_VENANT_KIRCHHOFF};
 use crate::{Case, Reading, Tolerance};
