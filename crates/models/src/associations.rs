@@ -22,7 +22,7 @@ pub fn variants() -> impl Iterator<Item = (ElementKind, &'static QuadratureRule)
 }
 
 impl Association {
-    /// All of them; laws of principal stretches are derived in tensors alone.
+    /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
         WRITTEN_LAWS.iter().flat_map(|law| {
             variants()

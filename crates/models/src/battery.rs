@@ -129,7 +129,7 @@ impl Battery {
         let mut uncut = Vec::new();
         for (map, form, cut) in forms(law.name, kind, rule) {
             let element = element_data(kind, rule, map).map_err(|error| untried(error.to_string()))?;
-            let Some(mut cell) = Cell::new(kind, map, (form, cut), &element, &compiled) else { continue };
+            let mut cell = Cell::new(kind, map, (form, cut), &element, &compiled);
             for (number, shape) in SHAPES.into_iter().enumerate() {
                 cell.lay(shape);
                 let kept = cell.least_volume(rule);
@@ -172,7 +172,7 @@ fn material(law: &WrittenLaw) -> Result<Material, String> {
 enum Form {
     /// In tensors.
     Tensors,
-    /// In numbers; laws of principal stretches have no such form.
+    /// In numbers.
     Numbers,
 }
 
@@ -271,14 +271,13 @@ struct Fragments(Vec<Running>);
 type Lane = (Vec<f64>, Vec<f64>);
 
 impl Cell {
-    /// `None` where the law has no such form.
     fn new(
         kind: ElementKind,
         map: MapKind,
         (form, cut): (Form, Cut),
         element: &ElementData,
         law: &EnergyLaw,
-    ) -> Option<Self> {
+    ) -> Self {
         let [energy, force, differential] = match form {
             Form::Tensors => {
                 let steps = element.steps(law, cut);
@@ -288,7 +287,7 @@ impl Cell {
                     .map(|addends| Fragments(addends.iter().map(running).collect()))
             }
             Form::Numbers => {
-                let derived = element.derive(law, cut).ok()?;
+                let derived = element.derive(law, cut);
                 let given = Given { graph: &derived.graph, law, symbols: &derived.symbols };
                 let running = |fragment: &ElementExpressions| {
                     let grouped = &fragment.grouped;
@@ -300,7 +299,7 @@ impl Cell {
         };
         // no cell before it is laid
         let (shape, rest) = (SHAPES[0], Vec::new());
-        Some(Self { kind, map, dimension: element.dimension, shape, rest, energy, force, differential })
+        Self { kind, map, dimension: element.dimension, shape, rest, energy, force, differential }
     }
 
     /// Rests in this shape.

@@ -145,7 +145,7 @@ impl Settings {
     fn derived(&self) -> Result<Derived, String> {
         let cut = self.cut.as_deref().unwrap_or("none");
         let cut = Cut::from_name(cut).ok_or_else(|| format!("there is no cut `{cut}`"))?;
-        self.element()?.derive(&self.law()?, cut).map_err(|error| error.to_string())
+        Ok(self.element()?.derive(&self.law()?, cut))
     }
 }
 
@@ -202,7 +202,7 @@ pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
         Count::DirectOperands => {
             let (derived, direct) =
                 (settings.derived()?, settings.element()?.derive_directly(&settings.law()?));
-            let direct = direct.map_err(|error| error.to_string())?.ok_or("the element is no box")?;
+            let direct = direct.ok_or("the element is no box")?;
             let ours = derived.differentials.iter().map(|fragment| fragment.operands(&derived.graph));
             return Ok(direct.operands() / ours.sum::<f64>());
         }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::separable::Corners;
 use super::{Cut, ElementData, Fragment, RestMap};
-use crate::graph::{Expr, Graph, Grouped, Operations, Shape, WithoutFormula};
+use crate::graph::{Expr, Graph, Grouped, Operations, Shape};
 use crate::law::EnergyLaw;
 
 /// Expressions of an element under one law.
@@ -108,7 +108,7 @@ struct AtSample {
 /// Name of the weight `ω` while a law is differentiated.
 pub(crate) const WEIGHT: &str = "weight";
 
-pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
+pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Derived {
     let mut graph = law.graph.clone();
     let symbols = Symbols::new(&mut graph, element, law);
     let Symbols { rest, displacements, variations, directions, .. } = &symbols;
@@ -117,7 +117,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     let mut samples = Vec::with_capacity(element.samples.len());
     for sample in 0..element.samples.len() {
         let mut at = Placing { graph: &mut graph, element, law, sample, rest, directions };
-        samples.push(at.expressions(&terms, displacements, variations, cut_variations)?);
+        samples.push(at.expressions(&terms, displacements, variations, cut_variations));
     }
     let variables: Vec<Expr> = displacements.iter().chain(variations).flatten().copied().collect();
     let counts = (terms.len(), samples.len());
@@ -174,7 +174,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     };
     let (energies, forces, differentials) = (grouped(energies), grouped(forces), grouped(differentials));
     let name = format!("{}{cut}", element.name);
-    Ok(Derived { graph, name, cut, symbols, energies, forces, differentials })
+    Derived { graph, name, cut, symbols, energies, forces, differentials }
 }
 
 /// The terms of the energy times `ω`, or their sum where the law is not cut. The weight is multiplied in before differentiation,
@@ -221,7 +221,7 @@ impl Placing<'_> {
         displacements: &[Vec<Expr>],
         variations: &[Vec<Expr>],
         cut_variations: bool,
-    ) -> Result<AtSample, WithoutFormula> {
+    ) -> AtSample {
         let dimension = self.element.dimension;
         let (inverse, determinant) = self.rest_map();
         let weight = self.graph.times_number(self.element.samples[self.sample].weight, determinant);
@@ -240,9 +240,9 @@ impl Placing<'_> {
             vec![None]
         };
         for term in terms {
-            energies.push(self.graph.components(term.energy, &given)?[0]);
+            energies.push(self.graph.components(term.energy, &given)[0]);
             let negative = self.graph.negate(term.stress);
-            stresses.push(self.graph.components(negative, &given)?);
+            stresses.push(self.graph.components(negative, &given));
             let mut of_term = Vec::new();
             for varied in &every {
                 let zero = self.graph.number(0.0);
@@ -257,11 +257,11 @@ impl Placing<'_> {
                 let variation = self.gradient(&masked, &inverse);
                 given.insert(self.law.variation, variation);
                 let negative = self.graph.negate(term.differential);
-                of_term.push(self.graph.components(negative, &given)?);
+                of_term.push(self.graph.components(negative, &given));
             }
             differentials.push(of_term);
         }
-        Ok(AtSample { inverse, energies, stresses, differentials })
+        AtSample { inverse, energies, stresses, differentials }
     }
 
     /// `X_ξ⁻¹`, by columns, and `det X_ξ`.
@@ -290,9 +290,8 @@ impl Placing<'_> {
         let inverse = self.graph.inverse(packed);
         let determinant = self.graph.determinant(packed);
         let components = |graph: &mut Graph, expr| graph.components(expr, &HashMap::new());
-        // an inverse and a determinant have formulas
-        let inverse = components(self.graph, inverse).unwrap_or_default();
-        let determinant = components(self.graph, determinant).unwrap_or_default();
+        let inverse = components(self.graph, inverse);
+        let determinant = components(self.graph, determinant);
         (inverse, determinant[0])
     }
 

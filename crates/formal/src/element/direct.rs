@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use super::derive::{Symbols, WEIGHT, terms};
 use super::separable::is_high;
 use super::{Cut, ElementData, RestMap};
-use crate::graph::{Expr, Graph, WithoutFormula};
+use crate::graph::{Expr, Graph};
 use crate::law::EnergyLaw;
 
 /// A differential in physical coordinates.
@@ -33,7 +33,7 @@ struct BoxShape<'a> {
 }
 
 /// `None` where the element is no box with one node in each corner.
-pub(super) fn derive(element: &ElementData, law: &EnergyLaw) -> Option<Result<Direct, WithoutFormula>> {
+pub(super) fn derive(element: &ElementData, law: &EnergyLaw) -> Option<Direct> {
     let RestMap::Box { low, high } = element.map else { return None };
     if element.node_count != 1 << element.dimension {
         return None;
@@ -44,12 +44,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw) -> Option<Result<Di
     Some(differential(graph, &shape, &symbols, law))
 }
 
-fn differential(
-    mut graph: Graph,
-    shape: &BoxShape,
-    symbols: &Symbols,
-    law: &EnergyLaw,
-) -> Result<Direct, WithoutFormula> {
+fn differential(mut graph: Graph, shape: &BoxShape, symbols: &Symbols, law: &EnergyLaw) -> Direct {
     let dimension = shape.element.dimension;
     let terms = terms(&mut graph, law, Cut::NONE);
     let mut addends: Vec<Vec<Expr>> = vec![Vec::new(); shape.element.node_count * dimension];
@@ -84,7 +79,7 @@ fn differential(
         ]);
         given.extend(symbols.directions.iter().cloned());
         for term in &terms {
-            let stress = graph.components(term.differential, &given)?;
+            let stress = graph.components(term.differential, &given);
             for (index, list) in addends.iter_mut().enumerate() {
                 let (node, row) = (index / dimension, index % dimension);
                 for column in 0..dimension {
@@ -95,7 +90,7 @@ fn differential(
         }
     }
     let differential = addends.iter().map(|addends| graph.sum(addends)).collect();
-    Ok(Direct { graph, differential })
+    Direct { graph, differential }
 }
 
 impl BoxShape<'_> {

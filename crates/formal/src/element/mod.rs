@@ -16,8 +16,6 @@ pub(crate) use derive::{WEIGHT, terms};
 pub use direct::Direct;
 pub use steps::{ConstantPlaces, Step, Steps};
 
-use crate::graph::WithoutFormula;
-
 /// What is known of an element.
 #[derive(Clone, Debug)]
 pub struct ElementData {
@@ -51,18 +49,15 @@ pub enum RestMap {
 }
 
 impl ElementData {
-    /// # Errors
-    /// The law needs principal stretches.
-    pub fn derive(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
+    /// Energy, forces and differential in numbers. The decomposition into principal stretches, which has no formula, is one operation on
+    /// nine of them.
+    pub fn derive(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Derived {
         derive::derive(self, law, cut)
     }
 
     /// The differential derived in physical coordinates; `None` where the element is no box with a node in each corner.
-    ///
-    /// # Errors
-    /// The law needs principal stretches.
-    pub fn derive_directly(&self, law: &crate::law::EnergyLaw) -> Result<Option<Direct>, WithoutFormula> {
-        direct::derive(self, law).transpose()
+    pub fn derive_directly(&self, law: &crate::law::EnergyLaw) -> Option<Direct> {
+        direct::derive(self, law)
     }
 
     /// What is computed at each step, in tensors and without writing them out: any law.

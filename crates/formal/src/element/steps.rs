@@ -4,7 +4,7 @@
 //! of the source; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`,
 //! `f_n = H ∂N_n/∂ξ`; the map of a box is three numbers, which scale columns. Spelled out the same takes fewer operations, by a fifth on a tetrahedron, because zeros and
 //! ones of the shape functions go into them; in tensors it takes a few instructions in the place of hundreds, each of which has
-//! to be looked at, and laws in principal stretches have no other form.
+//! to be looked at.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,6 @@
 //! Code of an element under a law: constants once, then forces and their differential at every step.
 
+use super::stretches::{OF_RUST, OF_WGSL, with_functions};
 use super::{Rust, Style, Wgsl, symbol, write};
 use crate::element::Derived;
 use crate::graph::{Expr, Grouped, Substitution};
@@ -85,8 +86,8 @@ impl Derived {
         let bodies = [&definitions[..], &self.graph.shared(forces), &self.graph.shared(differentials)]
             .map(|roots| write(&self.graph, roots, style));
         let text = match code {
-            ElementCode::Rust => shape.rust(bodies),
-            ElementCode::Wgsl => shape.wgsl(bodies),
+            ElementCode::Rust => with_functions(shape.rust(bodies), OF_RUST),
+            ElementCode::Wgsl => with_functions(shape.wgsl(bodies), OF_WGSL),
         };
         Emitted { text, constant_count: constants.len() }
     }

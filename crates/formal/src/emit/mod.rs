@@ -9,6 +9,7 @@ mod kernel;
 mod latex;
 mod rust;
 mod script;
+mod stretches;
 mod text;
 mod wgsl;
 
@@ -24,7 +25,7 @@ pub use text::Text;
 pub use wgsl::Wgsl;
 
 use crate::Function;
-use crate::graph::{Comparison, Expr, Graph, Node};
+use crate::graph::{Comparison, Expr, Graph, Node, Shape};
 
 /// How strongly a written expression binds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,6 +81,10 @@ pub trait Style {
     fn select(&self, comparison: (Comparison, &str, &str), value: &str, otherwise: &str) -> Written;
     /// Tensor operations; the default is for languages that are given numbers only.
     fn tensor(&self, _node: &Node, _operands: &[Written]) -> Option<Written> {
+        None
+    }
+    /// A number of a tensor of this shape, as [`Self::tensor`] writes that where nothing is said here.
+    fn entry(&self, _shape: Shape, _tensor: &Written, _index: u8) -> Option<Written> {
         None
     }
     /// A line that names a part.
@@ -203,7 +208,11 @@ impl Writer<'_> {
             }
             node => {
                 let operands: Vec<Written> = node.operands().map(|operand| of(&operand).clone()).collect();
-                self.style.tensor(node, &operands).unwrap_or_else(|| Written::atom("?"))
+                let entry = match node {
+                    Node::Entry(a, index) => self.style.entry(self.graph.shape(*a), of(a), *index),
+                    _ => None,
+                };
+                entry.or_else(|| self.style.tensor(node, &operands)).unwrap_or_else(|| Written::atom("?"))
             }
         }
     }

@@ -1,10 +1,11 @@
 //! Rust, in double precision.
 
+use super::stretches::Words;
 use super::text::sign_of;
 use super::{Binding, Style, Written};
 use crate::Function;
 use crate::function::FUNCTIONS;
-use crate::graph::Comparison;
+use crate::graph::{Comparison, Node, Shape};
 
 /// See the module.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,6 +19,11 @@ const TAKEN: &[&str] = &[
     "self", "Self", "static", "struct", "super", "trait", "true", "try", "type", "typeof", "unsafe",
     "unsized", "use", "virtual", "where", "while", "yield",
 ];
+
+const WORDS: Words = Words {
+    vector: |numbers| format!("[{}]", numbers.join(", ")),
+    matrix: |columns| format!("[{}]", columns.join(", ")),
+};
 
 impl Style for Rust {
     fn number(&self, value: f64) -> String {
@@ -59,6 +65,14 @@ impl Style for Rust {
 
     fn select(&self, (comparison, a, b): (Comparison, &str, &str), value: &str, otherwise: &str) -> Written {
         Written::atom(format!("(if {a} {} {b} {{ {value} }} else {{ {otherwise} }})", sign_of(comparison)))
+    }
+
+    fn tensor(&self, node: &Node, operands: &[Written]) -> Option<Written> {
+        WORDS.tensor(node, operands)
+    }
+
+    fn entry(&self, shape: Shape, tensor: &Written, index: u8) -> Option<Written> {
+        Some(super::stretches::entry(shape, tensor, index))
     }
 
     fn definition(&self, name: &str, value: &str) -> String {

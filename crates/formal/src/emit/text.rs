@@ -90,7 +90,11 @@ impl Style for Text {
             Node::Cross(..) => call("cross"),
             Node::Outer(..) => call("outer"),
             Node::Pack(_) => call("pack"),
-            Node::Entry(_, index @ 18..) => Written::atom(format!("l{}", index - 17)),
+            // of the deformation they have names
+            Node::Entry(_, index @ 18..) if operands[0].text == "svd(F)" => {
+                Written::atom(format!("l{}", index - 17))
+            }
+            Node::Entry(_, index @ 18..) => Written::atom(format!("{}.l{}", operands[0].text, index - 17)),
             // as the language names them
             Node::Entry(_, index) if operands[0].text == "F" => {
                 Written::atom(format!("F{}{}", index % 3 + 1, index / 3 + 1))

@@ -1,9 +1,10 @@
 //! WGSL, the shading language of WebGPU, in single precision.
 
+use super::stretches::Words;
 use super::text::sign_of;
 use super::{Style, Written};
 use crate::Function;
-use crate::graph::Comparison;
+use crate::graph::{Comparison, Node, Shape};
 
 /// See the module.
 #[derive(Clone, Copy, Debug, Default)]
@@ -159,6 +160,11 @@ const TAKEN: &[&str] = &[
     "yield",
 ];
 
+const WORDS: Words = Words {
+    vector: |numbers| format!("vec3<f32>({})", numbers.join(", ")),
+    matrix: |columns| format!("mat3x3<f32>({})", columns.join(", ")),
+};
+
 impl Style for Wgsl {
     fn number(&self, value: f64) -> String {
         // the nearest number of single precision, so that no literal is out of its range
@@ -213,6 +219,14 @@ impl Style for Wgsl {
 
     fn select(&self, (comparison, a, b): (Comparison, &str, &str), value: &str, otherwise: &str) -> Written {
         Written::atom(format!("select({otherwise}, {value}, {a} {} {b})", sign_of(comparison)))
+    }
+
+    fn tensor(&self, node: &Node, operands: &[Written]) -> Option<Written> {
+        WORDS.tensor(node, operands)
+    }
+
+    fn entry(&self, shape: Shape, tensor: &Written, index: u8) -> Option<Written> {
+        Some(super::stretches::entry(shape, tensor, index))
     }
 
     fn definition(&self, name: &str, value: &str) -> String {

@@ -8,32 +8,23 @@ impl Graph {
     /// The numbers of `expr` as expressions of numbers only, by columns. `given` says what stands for the entries of
     /// symbols; other symbols of several numbers become symbols of their own, `F` giving `F_00`, `F_10`, ….
     ///
-    /// # Errors
-    /// The decomposition into stretches has no finite formula: the expression that needs it.
-    pub fn components(
-        &mut self,
-        expr: Expr,
-        given: &HashMap<Expr, Vec<Expr>>,
-    ) -> Result<Vec<Expr>, WithoutFormula> {
+    /// The decomposition into stretches has no finite formula: it stays an operation on nine numbers, and so does what is made with it.
+    pub fn components(&mut self, expr: Expr, given: &HashMap<Expr, Vec<Expr>>) -> Vec<Expr> {
         let mut made = given.clone();
         for node in self.reachable(&[expr]) {
             if !made.contains_key(&node) {
-                let components = self.components_of(node, &made)?;
+                let components = self.components_of(node, &made);
                 made.insert(node, components);
             }
         }
-        Ok(made.remove(&expr).unwrap_or_default())
+        made.remove(&expr).unwrap_or_default()
     }
 
-    fn components_of(
-        &mut self,
-        expr: Expr,
-        made: &HashMap<Expr, Vec<Expr>>,
-    ) -> Result<Vec<Expr>, WithoutFormula> {
+    fn components_of(&mut self, expr: Expr, made: &HashMap<Expr, Vec<Expr>>) -> Vec<Expr> {
         let of = |operand: &Expr| &made[operand];
         let scalar = |operand: &Expr| made[operand][0];
         let node = self.node(expr).clone();
-        Ok(match &node {
+        match &node {
             Node::Symbol(_) if self.shape(expr) != Shape::Scalar => {
                 let symbol = self.symbol_of(expr).expect("a symbol").clone();
                 (0..symbol.shape.size())
@@ -80,12 +71,37 @@ impl Graph {
             Node::Decompose(_)
             | Node::Compose(..)
             | Node::StretchRates(..)
-            | Node::ComposeDifferential(_) => {
-                return Err(WithoutFormula);
-            }
+            | Node::ComposeDifferential(_) => self.components_of_stretches(expr, &node, made),
             // numbers of numbers
             _ => vec![self.rebuild(expr, &|operand| made[&operand][0])],
-        })
+        }
+    }
+
+    /// The numbers of the same operation on operands that are packed of their numbers.
+    fn components_of_stretches(
+        &mut self,
+        expr: Expr,
+        node: &Node,
+        made: &HashMap<Expr, Vec<Expr>>,
+    ) -> Vec<Expr> {
+        let packed: Vec<(Expr, Expr)> = node
+            .operands()
+            .map(|operand| {
+                let new = match *self.node(operand) {
+                    Node::Decompose(matrix) => {
+                        let matrix = self.pack(&made[&matrix]);
+                        self.decompose(matrix)
+                    }
+                    _ => self.pack(&made[&operand]),
+                };
+                (operand, new)
+            })
+            .collect();
+        let new = |operand: Expr| {
+            packed.iter().find_map(|(old, new)| (*old == operand).then_some(*new)).unwrap_or(operand)
+        };
+        let rebuilt = self.rebuild(expr, &new);
+        (0..self.shape(expr).size()).map(|index| self.entry(rebuilt, index as u8)).collect()
     }
 
     fn sum_of_products(&mut self, a: &[Expr], b: &[Expr]) -> Expr {
@@ -126,10 +142,3 @@ impl Graph {
             .collect()
     }
 }
-
-/// Principal stretches are roots of a cubic: code for one number at a time is not written for them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "principal stretches cannot be written out as code for single numbers; write the law with I1, I2, J, C or E"
-)]
-pub struct WithoutFormula;

@@ -111,17 +111,17 @@ impl Extraction<'_> {
     }
 
     fn constant_tensor(&mut self, expr: Expr) -> Expr {
-        if matches!(self.graph.node(expr), Node::Symbol(_) | Node::Identity | Node::Zero(_)) {
-            return expr;
-        }
-        match self.graph.components(expr, &HashMap::new()) {
-            Ok(entries) => {
-                let entries: Vec<Expr> = entries.into_iter().map(|entry| self.constant(entry)).collect();
-                self.graph.pack(&entries)
+        match *self.graph.node(expr) {
+            Node::Symbol(_) | Node::Identity | Node::Zero(_) => return expr,
+            Node::Decompose(matrix) => {
+                let matrix = self.constant(matrix);
+                return self.graph.decompose(matrix);
             }
-            // stretches of what does not vary are numbers of the law: they stay in the code
-            Err(_) => expr,
+            _ => {}
         }
+        let entries = self.graph.components(expr, &HashMap::new());
+        let entries: Vec<Expr> = entries.into_iter().map(|entry| self.constant(entry)).collect();
+        self.graph.pack(&entries)
     }
 
     /// The factors as whole powers of constants that are there already, where all of them are: their product is not

@@ -19,7 +19,6 @@ mod spectral;
 mod substitute;
 mod tensor;
 
-pub use components::WithoutFormula;
 pub use constants::Grouped;
 pub use count::Operations;
 pub(crate) use evaluate::EQUAL_STRETCHES;

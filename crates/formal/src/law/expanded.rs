@@ -40,7 +40,7 @@ impl Expansion {
     pub fn of(&mut self, text: &LawText) -> Option<Expanded> {
         let Read { mut graph, energy, .. } = read::read(text).ok()?;
         let (given, variables) = named(&mut graph, energy, text);
-        let [energy] = graph.components(energy, &given).ok()?[..] else { return None };
+        let [energy] = graph.components(energy, &given)[..] else { return None };
         let mut arithmetic = Arithmetic::allowing(LARGEST_EXPANSION);
         let mut made: Map<Expr, Option<Polynomial>> = Map::default();
         for expr in graph.reachable(&[energy]) {

@@ -193,14 +193,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         emit_text(&source, "rust", arguments.json);
         return Ok(End::Done);
     }
-    let is_report = matches!(arguments.emit, Emit::Stats) && !arguments.json && arguments.out.is_none();
-    if is_report && law.uses_stretches() {
-        print_line(Report::new(&law, &name, &element, kind, map).without_code(cut).trim_end());
-        return Ok(End::Done);
-    }
-    let mut derived = element
-        .derive(&law, cut)
-        .map_err(|error| Refusal::request("law", wanted, "a law of invariants", error.to_string()))?;
+    let mut derived = element.derive(&law, cut);
     let derived_seconds = clock.elapsed().as_secs_f64();
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder)

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use souple_formal::element::{Axis, Cut, Derived, ElementData, ElementExpressions};
 use souple_formal::emit::{ElementCode, Latex, write};
-use souple_formal::graph::{Operations, WithoutFormula};
+use souple_formal::graph::Operations;
 use souple_formal::law::EnergyLaw;
 use souple_mesh::ElementKind;
 use souple_models::derive::{
@@ -111,7 +111,7 @@ impl<'a> Report<'a> {
         let derived = element.steps(law, Cut::NONE);
         let steps =
             [&derived.forces[0], &derived.differentials[0]].map(|step| step.operations(&derived.graph));
-        let direct = element.derive_directly(law).ok().flatten().map(|direct| direct.operands());
+        let direct = element.derive_directly(law).map(|direct| direct.operands());
         let places = derived.constant_places();
         let of_steps: BTreeSet<&usize> =
             places.forces.iter().chain(&places.differentials).flatten().collect();
@@ -178,15 +178,6 @@ impl<'a> Report<'a> {
             let _ = writeln!(text, "  N_{node} = {}", polynomial(shape));
         }
         text + "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n\n"
-    }
-
-    /// Of a law in principal stretches, which has tensors alone: there is nothing to write out and to count.
-    pub fn without_code(&self, cut: Cut) -> String {
-        self.derivation(cut)
-            + &self.in_tensors()
-            + &format!(
-                "  {WithoutFormula}: no constants are grouped, and no code is written but with `--emit maxima`\n"
-            )
     }
 
     pub fn to_text(&self, derived: &mut Derived, [compiled, total]: [f64; 2]) -> String {
