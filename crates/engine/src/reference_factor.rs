@@ -26,7 +26,7 @@ use crate::tangent::{Linearisation, Tangent};
 
 /// The factor of `A₀`, in single precision where that keeps enough of it: what it lacks costs no more than a part of an iteration.
 enum Factor {
-    Rounded(RoundedFactor),
+    Rounded(Box<RoundedFactor>),
     Whole(Box<DirectSolver>),
 }
 
@@ -81,7 +81,8 @@ impl ReferenceFactor {
         factor.factorize(matrix)?;
         let diagonal = (0..matrix.block_count()).map(|block| matrix.diagonal_block(block).trace() / 3.0);
         let (diagonal, pattern) = (diagonal.collect(), Arc::clone(matrix.pattern()));
-        let factor = factor.into_rounded().map_or_else(Factor::Whole, Factor::Rounded);
+        let factor =
+            factor.into_rounded().map_or_else(Factor::Whole, |rounded| Factor::Rounded(Box::new(rounded)));
         Ok(Self {
             diagonal,
             pattern,

@@ -55,7 +55,7 @@ fn rounded_factors_are_nearly_whole() {
     };
     let (truss, solver) = factor_of(50.0);
     let whole = solver.bytes();
-    let rounded = solver.into_rounded().ok().expect("a matrix that is well conditioned");
+    let Ok(rounded) = solver.into_rounded() else { panic!("the matrix is well conditioned") };
     assert!(2 * rounded.bytes() < whole);
     let rows = truss.matrix.to_dense();
     // the smallest eigenvalue is 1
@@ -74,7 +74,7 @@ fn rounded_factors_are_nearly_whole() {
     rounded.solve(&mut nothing);
     assert!(nothing.iter().all(|x| *x == Vec3::ZERO));
     let (_, solver) = factor_of(1e8);
-    let solver = solver.into_rounded().err().expect("1e-8 of the diagonal is left in the pivots");
+    let Err(solver) = solver.into_rounded() else { panic!("1e-8 of the diagonal is left in the pivots") };
     let mut x = noise(truss.places.len(), 5);
     solver.solve(&mut x).unwrap();
 }
