@@ -29,5 +29,9 @@ fn wavering_elements_are_told() {
         "{:?}",
         returning.report.warnings
     );
+    // twice a period, an even number of changes is none at its end
+    let twice =
+        go(&[&coarse[..], &["bodies.bar.adapt.back=0.8", "systems.main.steps_per_period=2"]].concat());
+    assert_eq!(told(&twice).len(), 1, "{:?}", twice.report.warnings);
     assert!(told(&go(&coarse)).is_empty());
 }

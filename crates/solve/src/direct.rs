@@ -244,15 +244,13 @@ impl DirectSolver {
         let is_kept = f64::from(f32::EPSILON) < LOST_IN_SINGLE * self.least_pivot;
         let is_supernodal = matches!(self.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_));
         let is_cholesky = self.factorised && self.factor == Factor::Cholesky;
+        if !(is_kept && is_supernodal && is_cholesky) {
+            return Err(Box::new(self));
+        }
         let values: Vec<f32> = self.values.iter().map(|value| *value as f32).collect();
         let memory = MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f32>(1, Par::Seq));
         match memory {
-            Ok(memory)
-                if is_kept
-                    && is_supernodal
-                    && is_cholesky
-                    && values.iter().all(|value| value.is_finite()) =>
-            {
+            Ok(memory) if values.iter().all(|value| value.is_finite()) => {
                 let Self { order, symbolic, .. } = self;
                 let scratch = Mutex::new(RoundedScratch { memory, permuted: vec![[0.0; 3]; order.len()] });
                 Ok(RoundedFactor { order, symbolic, values, scratch })

@@ -118,6 +118,11 @@ impl AdaptiveForce {
         Ok(Self { solids, mesh, adaptation, rest, first_cell })
     }
 
+    /// How often cells have changed their law.
+    pub fn switches(&self, at: &Configuration) -> f64 {
+        at.memory[self.mesh.cell_count() + 1]
+    }
+
     fn laws<'a>(&self, memory: &'a [f64]) -> &'a [f64] {
         &memory[..self.mesh.cell_count()]
     }
