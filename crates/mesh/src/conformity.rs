@@ -15,6 +15,8 @@ use crate::{Aabb, AabbTree, Cell, Feature, Mesh, TriangleSurface, closest_point_
 pub struct Conformity {
     /// Pairs of volume cells that lie on the same side of a common face, lower number first.
     pub overlapping: Vec<[u32; 2]>,
+    /// Pairs of cells of a surface that have the same corners, lower number first.
+    pub twins: Vec<[u32; 2]>,
     /// Cells of quadrilaterals on whose other side two triangles are, and the cells of those.
     pub split: Vec<(u32, [u32; 2])>,
     /// Points on the boundary that coincide, lower number first.
@@ -61,8 +63,12 @@ impl Conformity {
         messages
     }
 
-    /// Cells that lie on the same side of a common face, in words; of the two, the one that was rewound was inverted.
+    /// Cells that lie on the same side of a common face, or on each other, in words; of the former, the one that was rewound was inverted.
     pub fn overlap(&self, rewound_cells: &[u32]) -> Option<String> {
+        if let Some([a, b]) = self.twins.first() {
+            let pairs = in_number(self.twins.len(), "such pair", "such pairs");
+            return Some(format!("cells[{a}] and cells[{b}] overlap: they have the same corners ({pairs})"));
+        }
         let &[a, b] = self.overlapping.first()?;
         let was_inverted = |cell: u32| rewound_cells.binary_search(&cell).is_ok();
         let which = match (was_inverted(a), was_inverted(b)) {
@@ -151,6 +157,7 @@ impl Mesh {
             self.faces().split.iter().map(|split| (split.cell, split.triangle_cells)).collect();
         Conformity {
             overlapping: self.overlapping_cells(),
+            twins: self.twins(),
             hinged_parts: self.hinged_parts(&split),
             // beside quadrilaterals that meet triangles the boundary has edges of three
             pinched: if self.dimension() == 3 && split.is_empty() {
@@ -192,7 +199,7 @@ impl Mesh {
 
     /// Cells that go around a common face in the same direction, each pair once.
     fn overlapping_cells(&self) -> Vec<[u32; 2]> {
-        // cells of surfaces lie on no side of their edges before they are turned to face one way
+        // a cell of a surface may go either way round, and its neighbour with it
         if self.dimension() != 3 {
             return Vec::new();
         }
@@ -216,6 +223,26 @@ impl Mesh {
         overlapping.sort_unstable();
         overlapping.dedup();
         overlapping
+    }
+
+    /// Cells of a surface with the same corners, each with the next such.
+    fn twins(&self) -> Vec<[u32; 2]> {
+        if self.dimension() != 2 {
+            return Vec::new();
+        }
+        let corners = |(number, cell): (usize, Cell<'_>)| {
+            let mut corners = [u32::MAX; 4];
+            let count = cell.kind.corner_count();
+            corners[..count].copy_from_slice(&cell.nodes[..count]);
+            corners.sort_unstable();
+            (corners, number as u32)
+        };
+        let mut all: Vec<([u32; 4], u32)> = self.cells().enumerate().map(corners).collect();
+        all.sort_unstable();
+        let mut twins: Vec<[u32; 2]> =
+            all.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]).collect();
+        twins.sort_unstable();
+        twins
     }
 
     fn slivers(&self) -> Vec<(u32, f64)> {
@@ -363,6 +390,20 @@ mod tests {
         let found = mesh.conformity();
         assert_eq!((found.coincident.len(), found.hanging.len()), (4, 5), "{found:?}");
         assert_eq!(found.messages(&mesh).len(), 2);
+    }
+
+    /// Cells of a surface may go round either way, as files have them; the same one twice is told.
+    #[test]
+    fn twins_are_found() {
+        let points = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y];
+        for second in [[0, 2, 3], [0, 3, 2]] {
+            let mut mesh = Mesh::new(points.clone(), ElementKind::Tri3, vec![0, 1, 2]);
+            mesh.push_cell(ElementKind::Tri3, &second);
+            assert_eq!(mesh.conformity().overlap(&[]), None);
+            mesh.push_cell(ElementKind::Tri3, &[2, 1, 0]);
+            let told = mesh.conformity().overlap(&[]).expect("the first triangle is there twice");
+            assert!(told.starts_with("cells[0] and cells[2] overlap: they have the same corners"), "{told}");
+        }
     }
 
     /// A node pushed through the opposite face: rewinding makes the volume positive, the overlap stays and is found.

@@ -23,6 +23,12 @@ impl Words {
             Node::Pack(_) if texts.len() == 3 => (self.vector)(&texts),
             Node::Pack(_) => (self.matrix)([0, 3, 6].map(|first| (self.vector)(&texts[first..first + 3]))),
             Node::Zero(Shape::Vector) => zero(),
+            Node::Identity => {
+                let column = |axis: usize| {
+                    (self.vector)(&[0, 1, 2].map(|row| if row == axis { "1.0" } else { "0.0" }.to_owned()))
+                };
+                (self.matrix)([0, 1, 2].map(column))
+            }
             Node::Zero(Shape::Matrix) => (self.matrix)([zero(), zero(), zero()]),
             Node::Decompose(_) => call(DECOMPOSE),
             Node::Compose(..) => call("compose"),
@@ -38,7 +44,11 @@ pub(super) fn entry(shape: Shape, tensor: &Written, index: u8) -> Written {
     let tensor = &tensor.text;
     Written::atom(match shape {
         Shape::Matrix => format!("{tensor}[{}][{}]", index / 3, index % 3),
-        Shape::Decomposition => format!("{tensor}.stretches[{}]", index.saturating_sub(STRETCHES)),
+        Shape::Decomposition if index < 9 => format!("{tensor}.left[{}][{}]", index / 3, index % 3),
+        Shape::Decomposition if index < STRETCHES => {
+            format!("{tensor}.right[{}][{}]", index / 3 - 3, index % 3)
+        }
+        Shape::Decomposition => format!("{tensor}.stretches[{}]", index - STRETCHES),
         _ => format!("{tensor}[{index}]"),
     })
 }

@@ -24,7 +24,7 @@ fn decompose(matrix: mat3x3<f32>) -> Decomposition {
         right[j] = v * by.y + w * by.x;
         pair += 1;
     }
-    // what has no length has no direction: any that is across the others does
+    // what has no length, or one lost in rounding, has no direction: any that is across the others does
     let a = left[0];
     let b = left[1];
     var u = vec3<f32>(1.0, 0.0, 0.0);
@@ -32,8 +32,9 @@ fn decompose(matrix: mat3x3<f32>) -> Decomposition {
         u = normalize(a);
     }
     var v = across(u);
-    if (dot(b, b) > 1e-20 * dot(a, a)) {
-        v = normalize(b - u * dot(u, b));
+    let beside = b - u * dot(u, b);
+    if (dot(beside, beside) > 1e-20 * dot(a, a)) {
+        v = normalize(beside);
     }
     let w = cross(u, v);
     return Decomposition(mat3x3<f32>(u, v, w), right, vec3<f32>(dot(u, a), dot(v, b), dot(w, left[2])));
@@ -76,7 +77,8 @@ fn stretch_rates(d: Decomposition, along: mat3x3<f32>) -> vec3<f32> {
 
 // The differential of `U diag(g) V^T` along `A`, with that of `g`: `U D V^T`, where the even part of `M = U^T A V` outside the diagonal is
 // multiplied by `(g_i - g_j)/(s_i - s_j)` and the odd one by `(g_i + g_j)/(s_i + s_j)`. `limits` are what the first tends to where two
-// stretches coincide, of the first and second, the second and third, the third and first.
+// stretches coincide, of the first and second, the second and third, the third and first. It has no value where two stretches vanish or
+// are opposite: rotations jump there.
 fn compose_differential(
     d: Decomposition,
     g: vec3<f32>,
