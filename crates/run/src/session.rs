@@ -330,6 +330,8 @@ impl Session {
         let steps = self.world.state().period - self.first_step;
         let mut hashes = self.recording.hashes.clone();
         add_hash(&mut hashes, &self.world);
+        let energy = self.world.energy();
+        let given = self.wavering.given(&energy, &self.bodies);
         Report {
             status,
             title: self.title.clone(),
@@ -348,7 +350,7 @@ impl Session {
             skin_changes: self.skin_changes.clone(),
             stages: self.world.stages(),
             around: self.around,
-            energy: (self.energy_at_start.clone(), self.world.energy()),
+            energy: (self.energy_at_start.clone(), energy),
             momentum: (self.momentum_at_start, self.world.momentum()),
             solver: self.solver,
             peak_bytes: peak_bytes(),
@@ -358,7 +360,7 @@ impl Session {
             hashes: hashes.into_iter().map(|hashed| (hashed.period, hashed.fingerprint.hash)).collect(),
             expectations: Vec::new(),
             failure: self.failure.clone(),
-            warnings: self.warnings.clone(),
+            warnings: self.warnings.iter().cloned().chain(given).collect(),
         }
     }
 }

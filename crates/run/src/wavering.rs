@@ -1,21 +1,26 @@
 //! Watches elements that change their law to and fro: under either law they go over the bound that leads to the other.
 //!
-//! An element returns to its first law where all criteria are below a fraction `back` of their thresholds. Where a second law is that
-//! much stiffer, an element at rest may exceed a threshold under the first law and fall below the fraction under the second, so that it
-//! changes in every period for ever: a body that should be at rest is not. It is told once of each body.
+//! An element returns to its first law where all criteria are below a fraction `back` of their thresholds. Where the laws differ much
+//! there, an element may exceed a threshold under the first law and fall below the fraction under the second, so that it changes for
+//! ever: a body that should be at rest is not, and one that moves is fed at every change. It is told once of each body, and at the end
+//! where changes have made more energy than the body stores.
 
-use souple_engine::World;
+use souple_engine::{EnergyReport, World};
 use souple_models::solids::AdaptiveForce;
 use souple_scene::BodyInfo;
-use souple_table::{counted, readable};
+use souple_table::{counted, four_digits, readable};
 
-/// Periods in a row in which an element changes its law before it is told: what comes to rest, or swings, stays longer with either.
-const PERIODS: u32 = 10;
+/// A change counts [`OF_CHANGE`], a period without one takes 1 off: what is told changes in ten periods in a row, or for long in more than
+/// a third of them. What comes to rest, or swings, stays longer with either law.
+const TOLD: u32 = 10 * OF_CHANGE;
+const OF_CHANGE: u32 = 2;
 
 /// Bodies that adapt, and for how long their elements have wavered.
 #[derive(Clone, Debug)]
 pub struct Wavering {
     bodies: Vec<Watched>,
+    /// Bodies that adapt, those that were told of as well.
+    adapting: Vec<usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -24,9 +29,9 @@ struct Watched {
     body: usize,
     /// Of every cell, after the last period.
     laws: Vec<f64>,
-    /// Periods in a row in which a cell has changed its law.
+    /// Of every cell, how much its law has changed of late.
     changes: Vec<u32>,
-    /// How often any has, and periods in a row in which some did and had the law of the period before again at the end.
+    /// How often any has changed, and how much of late some did and had the law of the period before again at the end.
     switches: f64,
     returns: u32,
 }
@@ -39,7 +44,9 @@ impl Wavering {
             let switches = switches_of(world, info)?;
             Some(Watched { body, changes: vec![0; laws.len()], laws, switches, returns: 0 })
         });
-        Self { bodies: watched.collect() }
+        let bodies: Vec<Watched> = watched.collect();
+        let adapting = bodies.iter().map(|watched| watched.body).collect();
+        Self { bodies, adapting }
     }
 
     /// Looks at the laws after a period; what there is to say of bodies whose elements waver for the first time.
@@ -50,8 +57,8 @@ impl Wavering {
             let Some(count) = watched.follow(world, info) else { return false };
             if count > 0 {
                 said.push(format!(
-                    "elements waver between their laws: at {} s at least {} of body `{}` changed in each of {PERIODS} periods, as under either law \
-                     they go over what leads to the other; take a smaller `adapt.back`, or 0 for elements that keep the second law",
+                    "elements waver between their laws: at {} s at least {} of body `{}` changed in ten periods in a row, or in more than a third of \
+                     them, as under either law they go over what leads to the other; take `adapt.back = 0`, under which elements keep the second law",
                     readable(world.time()),
                     counted(count as u64, "element"),
                     info.name,
@@ -61,6 +68,30 @@ impl Wavering {
         });
         said
     }
+
+    /// What there is to say of bodies to which changes of law have given more energy than they store.
+    pub fn given(&self, energy: &EnergyReport, bodies: &[BodyInfo]) -> Vec<String> {
+        let of = |body: &usize| {
+            let info = &bodies[*body];
+            let (_, of_law) = energy.by_force.iter().find(|(name, _)| *name == info.force)?;
+            let given = -of_law.dissipated;
+            (given > of_law.stored).then(|| {
+                format!(
+                    "changes of law have given body `{}` {} J, more than the {} J that it stores: its elements take a law where this stores \
+                     more than the one before; take `adapt.back = 0`, or lower thresholds, at which laws differ less",
+                    info.name,
+                    four_digits(given),
+                    four_digits(of_law.stored),
+                )
+            })
+        };
+        self.adapting.iter().filter_map(of).collect()
+    }
+}
+
+/// How much has changed of late, after a period more.
+fn counted_on(changes: u32, has_changed: bool) -> u32 {
+    if has_changed { changes + OF_CHANGE } else { changes.saturating_sub(1) }
 }
 
 impl Watched {
@@ -70,16 +101,16 @@ impl Watched {
         let (mut wavering, mut is_other) = (0, false);
         for (cell, (law, changes)) in self.laws.iter_mut().zip(&mut self.changes).enumerate() {
             let now = force.adapted_law(cell, &at)?;
-            *changes = if now == *law { 0 } else { *changes + 1 };
+            *changes = counted_on(*changes, now != *law);
             is_other |= now != *law;
             *law = now;
-            wavering += usize::from(*changes >= PERIODS);
+            wavering += usize::from(*changes >= TOLD);
         }
         // what changes in every step of a period of several is as it was at the end
         let switches = switches_of(world, body)?;
-        self.returns = if switches > self.switches && !is_other { self.returns + 1 } else { 0 };
+        self.returns = counted_on(self.returns, switches > self.switches && !is_other);
         self.switches = switches;
-        Some(wavering.max(usize::from(self.returns >= PERIODS)))
+        Some(wavering.max(usize::from(self.returns >= TOLD)))
     }
 }
 

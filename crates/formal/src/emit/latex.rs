@@ -124,7 +124,10 @@ impl Style for Latex {
             Node::Outer(..) => product(format!("{}\\otimes {}", a(0), a(1))),
             Node::Entry(_, index @ 18..) => Written::atom(format!("\\lambda_{{{}}}", index - 17)),
             Node::Entry(_, index) => {
-                Written::atom(format!("{}_{{{}{}}}", atom(0), index % 3 + 1, index / 3 + 1))
+                let base = atom(0);
+                // a second index needs the first in braces
+                let base = if base.contains('_') { format!("{{{base}}}") } else { base };
+                Written::atom(format!("{base}_{{{}{}}}", index % 3 + 1, index / 3 + 1))
             }
             Node::Pack(_) => call("vec"),
             Node::Decompose(_) => call("svd"),
