@@ -12,9 +12,12 @@ use crate::osc::OscDevice;
 
 /// A device in use.
 pub trait Device: Send {
-    /// Gives the device a force [N] for the tick that begins, and tells where it is, from where it started [m]; `None` while it
-    /// is lost. It does not wait.
-    fn exchange(&mut self, force: Vec3) -> Option<Vec3>;
+    /// Where it is at the end of the tick that it has lived through, under the force that it was given last, from where it started [m];
+    /// `None` while it is lost. It does not wait.
+    fn place(&mut self) -> Option<Vec3>;
+
+    /// Gives the device a force [N] for the tick that begins, and for those after it until it is given another. It does not wait.
+    fn give(&mut self, force: Vec3);
 
     /// What it has said so far that made no sense.
     fn refused(&self) -> u64 {

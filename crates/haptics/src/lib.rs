@@ -26,7 +26,7 @@ pub use device::{ChooseDevice, DEVICES, Device, DeviceChoice, Devices};
 pub use emulated::EmulatedHand;
 pub use exchange::Latest;
 pub use freshness::{Ages, Freshness};
-pub use pace::{Histogram, Pace, Rank, hurry, step_back};
+pub use pace::{Histogram, Hurry, Pace, Rank, hurry};
 pub use port::{Port, PortState};
 pub use service::{DeviceNow, Feels, Served, Service, ServiceError, Station, Tick, Told, Toll};
 pub use smoothing::{BETWEEN, Between, ForceSmoothing, Smoothing};

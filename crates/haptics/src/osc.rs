@@ -66,6 +66,10 @@ impl OscDevice {
         self.socket.local_addr()
     }
 
+    fn is_lost(&self) -> bool {
+        self.silent > self.patience || self.origin.is_none()
+    }
+
     fn hear(&mut self) {
         let mut buffer = [0; LONGEST];
         self.silent += 1;
@@ -109,19 +113,20 @@ fn vector(arguments: &[OscType]) -> Option<Vec3> {
 }
 
 impl Device for OscDevice {
-    fn exchange(&mut self, force: Vec3) -> Option<Vec3> {
+    fn place(&mut self) -> Option<Vec3> {
         self.hear();
-        let is_lost = self.silent > self.patience || self.origin.is_none();
-        if let Some(peer) = self.peer {
-            let force = if is_lost { Vec3::ZERO } else { force };
-            let args = force.to_array().map(|number| OscType::Float(number as f32)).to_vec();
-            let message = OscPacket::Message(OscMessage { addr: FORCE.to_owned(), args });
-            if let Ok(packet) = rosc::encoder::encode(&message) {
-                // a peer that does not listen is found out by its silence
-                let _ = self.socket.send_to(&packet, peer);
-            }
+        (!self.is_lost()).then_some(self.place)
+    }
+
+    fn give(&mut self, force: Vec3) {
+        let Some(peer) = self.peer else { return };
+        let force = if self.is_lost() { Vec3::ZERO } else { force };
+        let args = force.to_array().map(|number| OscType::Float(number as f32)).to_vec();
+        let message = OscPacket::Message(OscMessage { addr: FORCE.to_owned(), args });
+        if let Ok(packet) = rosc::encoder::encode(&message) {
+            // a peer that does not listen is found out by its silence
+            let _ = self.socket.send_to(&packet, peer);
         }
-        (!is_lost).then_some(self.place)
     }
 
     fn refused(&self) -> u64 {
@@ -171,7 +176,8 @@ mod tests {
     fn wait(device: &mut OscDevice, force: Vec3, until: impl Fn(&OscDevice, Option<Vec3>) -> bool) {
         let clock = Instant::now();
         loop {
-            let place = device.exchange(force);
+            let place = device.place();
+            device.give(force);
             if until(device, place) {
                 return;
             }
@@ -184,7 +190,8 @@ mod tests {
     #[test]
     fn places_in_forces_out() {
         let mut device = OscDevice::open(0, 2.0, 10.0).expect("a port");
-        assert_eq!(device.exchange(Vec3::X), None);
+        assert_eq!(device.place(), None);
+        device.give(Vec3::X);
         let client = Client::of(&device);
         client.place([0.5, 0.0, 0.0]);
         wait(&mut device, Vec3::ZERO, |_, place| place == Some(Vec3::ZERO));

@@ -93,50 +93,93 @@ impl Rank {
     }
 }
 
-/// Puts this thread before others of the machine where the system allows it; what that came to, in words.
-pub fn hurry(rank: Rank) -> String {
-    if has_hurried(rank.priority()) {
+/// What came of the wish for priority of a thread.
+#[derive(Clone, Debug)]
+pub struct Hurry {
+    /// In words.
+    pub told: String,
+    earlier: Earlier,
+}
+
+impl Hurry {
+    /// Puts this thread, which must be the one that hurried, where it was before.
+    pub fn step_back(&self) {
+        self.earlier.restore();
+    }
+}
+
+/// Puts this thread before others of the machine where the system allows it.
+pub fn hurry(rank: Rank) -> Hurry {
+    let (has_hurried, earlier) = hurried(rank.priority());
+    let told = if has_hurried {
         format!("real-time priority {}", rank.priority())
     } else {
-        "no real-time priority: the system refuses it, and other programs may delay the loop".to_owned()
-    }
+        let held_up = match rank {
+            Rank::Devices => "the loop",
+            Rank::World => "the world",
+        };
+        format!("no real-time priority: the system refuses it, and other programs may delay {held_up}")
+    };
+    Hurry { told, earlier }
 }
 
-/// Puts this thread among all others again.
-pub fn step_back() {
-    has_stepped_back();
+/// How a thread stood before it hurried.
+#[cfg(target_os = "linux")]
+#[derive(Clone, Copy, Debug)]
+struct Earlier {
+    /// By how much its sleeps may end later than asked for [ns].
+    slack: libc::c_int,
+    /// Policy and priority; `None` where they were not changed.
+    place: Option<(libc::c_int, libc::c_int)>,
 }
 
 #[cfg(target_os = "linux")]
-fn has_hurried(priority: i32) -> bool {
-    // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
+fn hurried(priority: i32) -> (bool, Earlier) {
+    // SAFETY: plain calls about the calling thread, with structures made here that live through them.
     unsafe {
+        let slack = libc::prctl(libc::PR_GET_TIMERSLACK);
         // sleeps end when they are due, not when it suits the system
         libc::prctl(libc::PR_SET_TIMERSLACK, 1);
-        let parameters = libc::sched_param { sched_priority: priority };
-        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters) == 0
+        let (mut policy, mut before) = (libc::SCHED_OTHER, libc::sched_param { sched_priority: 0 });
+        let is_known = libc::pthread_getschedparam(libc::pthread_self(), &mut policy, &mut before) == 0;
+        let wanted = libc::sched_param { sched_priority: priority };
+        // what cannot be put back is not changed
+        let has_hurried =
+            is_known && libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &wanted) == 0;
+        (has_hurried, Earlier { slack, place: has_hurried.then_some((policy, before.sched_priority)) })
     }
 }
 
 #[cfg(target_os = "linux")]
-fn has_stepped_back() -> bool {
-    // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
-    unsafe {
-        // 0: the slack that the thread had when it began
-        libc::prctl(libc::PR_SET_TIMERSLACK, 0);
-        let parameters = libc::sched_param { sched_priority: 0 };
-        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_OTHER, &parameters) == 0
+impl Earlier {
+    fn restore(&self) {
+        // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
+        unsafe {
+            // 0 would be the slack that the thread began with: what could not be read
+            libc::prctl(libc::PR_SET_TIMERSLACK, self.slack.max(0));
+            if let Some((policy, sched_priority)) = self.place {
+                libc::pthread_setschedparam(
+                    libc::pthread_self(),
+                    policy,
+                    &libc::sched_param { sched_priority },
+                );
+            }
+        }
     }
 }
 
 #[cfg(not(target_os = "linux"))]
-fn has_hurried(_: i32) -> bool {
-    false
+#[derive(Clone, Copy, Debug)]
+struct Earlier;
+
+#[cfg(not(target_os = "linux"))]
+fn hurried(_: i32) -> (bool, Earlier) {
+    (false, Earlier)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn has_stepped_back() -> bool {
-    true
+impl Earlier {
+    fn restore(&self) {}
 }
 
 /// How long periods were, in bins of ten microseconds.
@@ -275,6 +318,32 @@ mod tests {
         // back by GAIN (1 - SHARE) = 50 ns a tick
         (0..6_400).for_each(|_| awake.learn(Duration::ZERO));
         assert_eq!(awake.0, LEAST_AWAKE);
+    }
+
+    /// A thread that has hurried, or was refused, stands afterwards where it stood before.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn threads_step_back_to_where_they_were() {
+        let stands = || {
+            let mut parameters = libc::sched_param { sched_priority: 0 };
+            let mut policy = -1;
+            // SAFETY: plain calls about the calling thread, with structures made here that live through them.
+            let slack = unsafe {
+                libc::pthread_getschedparam(libc::pthread_self(), &mut policy, &mut parameters);
+                libc::prctl(libc::PR_GET_TIMERSLACK)
+            };
+            (policy, parameters.sched_priority, slack)
+        };
+        // SAFETY: a plain call about the calling thread.
+        unsafe { libc::prctl(libc::PR_SET_TIMERSLACK, 70_000) };
+        let before = stands();
+        let outer = hurry(Rank::World);
+        let between = stands();
+        let inner = hurry(Rank::Devices);
+        inner.step_back();
+        assert_eq!(stands(), between);
+        outer.step_back();
+        assert_eq!(stands(), before);
     }
 
     /// No date comes too soon, and dates do not drift: after `n` waits `n` periods have passed, whatever each took.

@@ -198,12 +198,26 @@ struct Desk {
 }
 
 impl Desk {
+    /// With nothing told yet, and room for so many moments.
+    fn of(station: Station, room: usize) -> Self {
+        Self {
+            freshness: Freshness::new(station.period),
+            tool: Smoothing::new(station.between, station.period),
+            felt: ForceSmoothing::new(station.between, station.period),
+            station,
+            port: Port::start(),
+            device: Some(Vec3::ZERO),
+            told: 0.0,
+            ticks: Vec::with_capacity(room),
+        }
+    }
+
     /// At the date `now`, by so many ticks after the last one, and by the clock at `clock` [s].
     fn serve(&mut self, wire: &Wire, now: f64, ticks: u32, clock: f64) {
         let Station { device, port, feels, .. } = &mut self.station;
         let elapsed = f64::from(ticks) * TICK;
         for _ in 0..ticks.min(MOST_AT_ONCE) {
-            self.device = device.exchange(self.port.force);
+            self.device = device.place();
         }
         if let Some([x, y, z, u, v, w, a, b, c, told, looked]) = wire.tool.read()
             && told != self.told
@@ -225,6 +239,7 @@ impl Desk {
                 self.felt.periods(now)
             }
         };
+        device.give(self.port.force);
         self.freshness.note(shown, clock);
         let [x, y, z] = self.port.place.to_array();
         wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some())), clock]);
@@ -242,18 +257,9 @@ fn serve(
     start: Instant,
     room: usize,
 ) -> Served {
-    let desk = |station: Station| Desk {
-        freshness: Freshness::new(station.period),
-        tool: Smoothing::new(station.between, station.period),
-        felt: ForceSmoothing::new(station.between, station.period),
-        station,
-        port: Port::start(),
-        device: Some(Vec3::ZERO),
-        told: 0.0,
-        ticks: Vec::with_capacity(room),
-    };
-    let mut desks: Vec<Desk> = stations.into_iter().map(desk).collect();
-    let mut toll = Toll { priority: hurry(Rank::Devices), ..Toll::default() };
+    let mut desks: Vec<Desk> = stations.into_iter().map(|station| Desk::of(station, room)).collect();
+    // the thread ends with the loop: nobody asks for its earlier place
+    let mut toll = Toll { priority: hurry(Rank::Devices).told, ..Toll::default() };
     let (mut pace, mut woken, mut dates) = (Pace::from(start, Duration::from_secs_f64(TICK)), start, 0_u64);
     while !stop.load(Ordering::Relaxed) {
         let (_, left_out) = pace.wait();
@@ -270,7 +276,7 @@ fn serve(
     }
     // the device is left without force
     for desk in &mut desks {
-        let _ = desk.station.device.exchange(Vec3::ZERO);
+        desk.station.device.give(Vec3::ZERO);
     }
     let refused = desks.iter().map(|desk| desk.station.device.refused()).collect();
     let mut served = Served { toll, ticks: Vec::new(), ports: Vec::new(), refused, ages: Vec::new() };
@@ -292,10 +298,12 @@ mod tests {
     }
 
     impl Device for Away {
-        fn exchange(&mut self, _: Vec3) -> Option<Vec3> {
+        fn place(&mut self) -> Option<Vec3> {
             self.left = self.left.saturating_sub(1);
             (self.left > 0).then_some(Vec3::X * 0.01)
         }
+
+        fn give(&mut self, _: Vec3) {}
     }
 
     fn at_a_desk(port: Port, device: Box<dyn Device>, feels: Feels) -> Station {
@@ -326,15 +334,53 @@ mod tests {
         assert_eq!(served.ports[0].force, Vec3::ZERO);
     }
 
+    /// A device that goes a millimetre further every tick, and keeps each place with the force that it is given there.
+    struct Walking {
+        ticks: u32,
+        given: Arc<std::sync::Mutex<Vec<(u32, Vec3)>>>,
+    }
+
+    impl Device for Walking {
+        fn place(&mut self) -> Option<Vec3> {
+            self.ticks += 1;
+            Some(Vec3::X * 1e-3 * f64::from(self.ticks))
+        }
+
+        fn give(&mut self, force: Vec3) {
+            self.given.lock().expect("no test has failed").push((self.ticks, force));
+        }
+    }
+
+    /// A device is given the force of the place that it has just told, not of the one before: that of a spring of 400 N/m to a tool that rests.
+    #[test]
+    fn forces_are_given_in_the_tick_that_makes_them() {
+        let coupling = Coupling { damping: 0.0, ..Coupling::DEFAULT };
+        let given = Arc::default();
+        let device = Box::new(Walking { ticks: 0, given: Arc::clone(&given) });
+        let mut desk = Desk::of(at_a_desk(Port { coupling, passive: false }, device, Feels::Tool), 10);
+        let wire = Wire { device: Latest::new([0.0; 5]), tool: Latest::new([0.0; 11]) };
+        for tick in 1..=10 {
+            let now = f64::from(tick) * TICK;
+            desk.serve(&wire, now, 1, now);
+        }
+        let given = given.lock().expect("no test has failed");
+        assert_eq!(given.len(), 10);
+        for (tick, force) in given.iter() {
+            assert!((force.x + 400.0 * 1e-3 * f64::from(*tick)).abs() < 1e-12, "{given:?}");
+        }
+    }
+
     /// A device that is there and rests, until it is taken away.
     struct Resting {
         is_away: Arc<AtomicBool>,
     }
 
     impl Device for Resting {
-        fn exchange(&mut self, _: Vec3) -> Option<Vec3> {
+        fn place(&mut self) -> Option<Vec3> {
             (!self.is_away.load(Ordering::Relaxed)).then_some(Vec3::ZERO)
         }
+
+        fn give(&mut self, _: Vec3) {}
     }
 
     /// Calls until a condition holds.

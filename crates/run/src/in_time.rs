@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use souple_engine::{Edit, EditError, StageTimes};
 use souple_haptics::{
-    DeviceNow, Feels, Histogram, Moving, Rank, Served, Service, ServiceError, Station, TICK, Told, hurry,
-    step_back,
+    DeviceNow, Feels, Histogram, Hurry, Moving, Rank, Served, Service, ServiceError, Station, TICK, Told,
+    hurry,
 };
 
 use crate::{Control, Governor, Progress, Session, Stepped, Trace};
@@ -34,6 +34,8 @@ pub struct WorldToll {
     pub begun: Histogram,
     /// What came of the wish for priority.
     pub priority: String,
+    /// Probes are read after so much time of the world, and at its end [s].
+    pub between_measures: f64,
 }
 
 /// What a run in time was.
@@ -62,27 +64,34 @@ pub enum TimeError {
 
 /// A world that is behind by more periods gives up catching up.
 const CATCHING_UP: f64 = 3.0;
-/// Of a tick.
+/// Of a tick, and of a period.
 const ROUNDING: f64 = 1e-6;
 /// Probes are read no more often [s]: they are for people and files, and may cost more than a short period.
 const MEASURED: f64 = 0.01;
 
-/// The threads of the world before those of other programs, until it is dropped.
-struct Hurried;
+/// The threads of the world before those of other programs, until it is dropped; then each is where it was.
+struct Hurried {
+    world: Hurry,
+    /// By their numbers.
+    pool: Vec<Hurry>,
+}
 
 impl Hurried {
-    fn new(priority: &mut String) -> Self {
-        *priority = hurry(Rank::World);
-        rayon::broadcast(|_| hurry(Rank::World));
-        Self
+    fn new() -> Self {
+        Self { world: hurry(Rank::World), pool: rayon::broadcast(|_| hurry(Rank::World)) }
     }
 }
 
 impl Drop for Hurried {
     fn drop(&mut self) {
-        step_back();
-        rayon::broadcast(|_| step_back());
+        self.world.step_back();
+        rayon::broadcast(|thread| self.pool[thread.index()].step_back());
     }
+}
+
+/// Probes are read after so many periods, and after the last one.
+fn periods_between_measures(period: f64) -> u64 {
+    (MEASURED / period - ROUNDING).ceil().max(1.0) as u64
 }
 
 /// When periods are due, by a clock that counts seconds from the beginning of a run.
@@ -138,10 +147,14 @@ pub fn run_in_time(
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
     let mut governor = Governor::new(session.world.model());
     let mut leads = vec![Lead { is_held: true, looked: 0.0 }; session.hands.len()];
-    let _hurried = Hurried::new(&mut toll.priority);
-    let between_measures = (MEASURED / period).round().max(1.0) as u64;
-    std::thread::sleep(service.next_served().saturating_duration_since(Instant::now()));
-    let (began, stages) = (Instant::now(), session.world.stages());
+    let hurried = Hurried::new();
+    toll.priority.clone_from(&hurried.world.told);
+    let (between_measures, mut measured) = (periods_between_measures(period), 0);
+    toll.between_measures = between_measures as f64 * period;
+    // dates are counted from this one, however late the sleep ends
+    let began = service.next_served();
+    std::thread::sleep(began.saturating_duration_since(Instant::now()));
+    let stages = session.world.stages();
     let (mut dates, mut begun) = (Dates { period, ..Dates::default() }, began);
     let mut was_stopped = false;
     for step in 1..=steps {
@@ -150,7 +163,9 @@ pub fn run_in_time(
             break;
         }
         let clock = Instant::now();
-        toll.begun.push((clock - begun).as_secs_f64());
+        if step > 1 {
+            toll.begun.push((clock - begun).as_secs_f64());
+        }
         begun = clock;
         lead(session, &service, &mut leads)?;
         let stepped = session.step();
@@ -165,6 +180,7 @@ pub fn run_in_time(
         }));
         if step.is_multiple_of(between_measures) {
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+            measured = step;
         }
         toll.periods = step;
         let load = clock.elapsed().as_secs_f64() / period;
@@ -185,6 +201,11 @@ pub fn run_in_time(
     toll.stages = session.world.stages() - stages;
     toll.drift = dates.drift(toll.periods, began.elapsed().as_secs_f64());
     let served = service.end().ok_or(TimeError::Lost)?;
+    drop(hurried);
+    if measured < toll.periods {
+        // how it ended
+        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+    }
     Ok(InTime { world: toll, served, traces, was_stopped })
 }
 
@@ -267,6 +288,13 @@ mod tests {
         assert!((dates.drift(steps, now) - (0.4 - (1.0 - 0.9234)) * period).abs() < 1e-6);
         assert!((dates.late as f64) < 1e-3 * steps as f64, "{}", dates.late);
         assert_eq!(dates.lost, 0.0);
+    }
+
+    /// Probes are read after whole periods, no more often than once in ten milliseconds.
+    #[test]
+    fn probes_are_read_seldom() {
+        let read = [1e-3, 2e-3, 3e-3, 4e-3, 7e-3, 10e-3, 0.02].map(periods_between_measures);
+        assert_eq!(read, [10, 5, 4, 3, 2, 1, 1]);
     }
 
     /// A machine that stands still for a second gives that second up, and is in time again with the next period.

@@ -94,6 +94,7 @@ impl InTime {
             "world": {
                 "priority": world.priority,
                 "periods": world.periods,
+                "seconds_between_measures": world.between_measures,
                 "simulated_seconds": world.periods as f64 * period,
                 "load": {
                     "mean": mean,
