@@ -2,8 +2,9 @@
 //!
 //! A timeline that nobody asked for keeps nothing. What it keeps is no part of any state and changes none.
 
-use std::collections::BTreeMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::ThreadId;
 use std::time::Instant;
 
 /// A stage of a thread's work.
@@ -25,14 +26,18 @@ pub struct Timeline(Option<Arc<Kept>>);
 #[derive(Debug)]
 struct Kept {
     began: Instant,
+    /// Spans that are kept at most.
+    most: usize,
     noted: Mutex<Noted>,
 }
 
 #[derive(Debug, Default)]
 struct Noted {
-    spans: Vec<Span>,
-    /// By their names.
-    threads: BTreeMap<String, usize>,
+    /// Those that ended last.
+    spans: VecDeque<Span>,
+    /// Threads may be called alike.
+    threads: HashMap<ThreadId, usize>,
+    names: Vec<String>,
     left_out: u64,
 }
 
@@ -42,42 +47,52 @@ const MOST: usize = 1_000_000;
 impl Timeline {
     /// One that keeps what is noted from now on.
     pub fn begin() -> Self {
-        Self(Some(Arc::new(Kept { began: Instant::now(), noted: Mutex::default() })))
+        Self::of(MOST)
     }
 
-    /// Notes a stage of this thread that ends now.
+    fn of(most: usize) -> Self {
+        Self(Some(Arc::new(Kept { began: Instant::now(), most, noted: Mutex::default() })))
+    }
+
+    /// Notes a stage of this thread that ends now. Where there is no more room the one that ended first gives way: what is looked into is, as a
+    /// rule, what came last.
     pub fn note(&self, name: &'static str, began: Instant) {
         let Some(kept) = &self.0 else { return };
         let duration = began.elapsed().as_secs_f64();
         let start = began.saturating_duration_since(kept.began).as_secs_f64();
+        let current = std::thread::current();
         let mut noted = kept.lock();
-        if noted.spans.len() >= MOST {
+        if noted.spans.len() >= kept.most {
+            noted.spans.pop_front();
             noted.left_out += 1;
-            return;
         }
-        let (current, next) = (std::thread::current(), noted.threads.len());
-        let called = current.name().unwrap_or("unnamed").to_owned();
-        let thread = *noted.threads.entry(called).or_insert(next);
-        noted.spans.push(Span { name, thread, start, duration });
+        let thread = noted.index_of(&current);
+        noted.spans.push_back(Span { name, thread, start, duration });
     }
 
-    /// All that were noted, in the order in which they ended.
+    /// All that are kept, in the order in which they ended.
     pub fn spans(&self) -> Vec<Span> {
-        self.0.as_ref().map_or_else(Vec::new, |kept| kept.lock().spans.clone())
+        self.0.as_ref().map_or_else(Vec::new, |kept| kept.lock().spans.iter().copied().collect())
     }
 
-    /// The names of threads.
+    /// The names of threads, of which several may have the same.
     pub fn threads(&self) -> Vec<String> {
-        let Some(kept) = &self.0 else { return Vec::new() };
-        let mut named: Vec<(usize, String)> =
-            kept.lock().threads.iter().map(|(name, index)| (*index, name.clone())).collect();
-        named.sort_unstable();
-        named.into_iter().map(|(_, name)| name).collect()
+        self.0.as_ref().map_or_else(Vec::new, |kept| kept.lock().names.clone())
     }
 
-    /// Spans for which there was no more room.
+    /// Spans that gave way to later ones.
     pub fn left_out(&self) -> u64 {
         self.0.as_ref().map_or(0, |kept| kept.lock().left_out)
+    }
+}
+
+impl Noted {
+    fn index_of(&mut self, thread: &std::thread::Thread) -> usize {
+        let names = &mut self.names;
+        *self.threads.entry(thread.id()).or_insert_with(|| {
+            names.push(thread.name().unwrap_or("unnamed").to_owned());
+            names.len() - 1
+        })
     }
 }
 
@@ -117,5 +132,30 @@ mod tests {
             first.start <= second.start + second.duration && second.start <= first.start + first.duration
         );
         assert_eq!((Timeline::default().spans(), timeline.left_out()), (Vec::new(), 0));
+    }
+
+    /// Threads that are called alike are told apart.
+    #[test]
+    fn names_are_not_threads() {
+        let timeline = Timeline::begin();
+        for _ in 0..2 {
+            let own = timeline.clone();
+            let work = move || own.note("work", Instant::now());
+            std::thread::Builder::new().name("client".to_owned()).spawn(work).unwrap().join().unwrap();
+        }
+        assert_eq!(timeline.threads(), ["client", "client"]);
+        let of: Vec<usize> = timeline.spans().iter().map(|span| span.thread).collect();
+        assert_eq!(of, [0, 1]);
+    }
+
+    /// A full timeline keeps what came last, and counts what gave way.
+    #[test]
+    fn the_latest_are_kept() {
+        let timeline = Timeline::of(2);
+        for name in ["a", "b", "c", "d", "e"] {
+            timeline.note(name, Instant::now());
+        }
+        let names: Vec<&str> = timeline.spans().iter().map(|span| span.name).collect();
+        assert_eq!((names, timeline.left_out()), (vec!["d", "e"], 3));
     }
 }

@@ -34,6 +34,25 @@ pub fn write_file(
     })
 }
 
+/// Whether [`write_file`] can be expected to write a file: tried with an empty one beside, which is removed again.
+///
+/// # Errors
+/// It is a folder, or the folder that it is to be in is missing or not writable.
+pub fn may_be_written(path: &Path) -> Result<(), IoError> {
+    match fs::metadata(path) {
+        Ok(target) if target.is_dir() => {
+            return Err(IoError::write(path, std::io::ErrorKind::IsADirectory.into()));
+        }
+        // what a device or a pipe takes is known when it is written
+        Ok(target) if !target.is_file() => return Ok(()),
+        _ => {}
+    }
+    let temporary = name_beside(path)
+        .ok_or_else(|| IoError::request("the path", format!("`{}`", path.display()), "the name of a file"))?;
+    let tried = fs::File::create_new(&temporary).and_then(|_| fs::remove_file(&temporary));
+    tried.map_err(|source| IoError::write(path, source))
+}
+
 /// Writes several files that belong together: all are complete beside before the first is renamed.
 ///
 /// # Errors
@@ -103,6 +122,17 @@ fn name_beside(path: &Path) -> Option<PathBuf> {
 mod tests {
     use super::*;
     use crate::testing::TemporaryFolder;
+
+    /// What can be written is known before, and leaves nothing behind.
+    #[test]
+    fn what_can_be_written_is_known_before() {
+        let folder = TemporaryFolder::new("may_be_written");
+        assert!(may_be_written(&folder.path("new")).is_ok());
+        assert_eq!(fs::read_dir(folder.path(".")).unwrap().count(), 0);
+        assert!(may_be_written(&folder.path(".")).is_err());
+        assert!(may_be_written(&folder.path("missing/new")).is_err());
+        assert!(may_be_written(Path::new("..")).is_err());
+    }
 
     /// A failed write leaves the old file and no other; a good one replaces it.
     #[test]

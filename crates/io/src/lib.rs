@@ -28,7 +28,7 @@ mod tetgen;
 mod vtk;
 mod wav;
 
-pub use beside::write_file;
+pub use beside::{may_be_written, write_file};
 pub use csv::{Column, csv_cell, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};

@@ -57,7 +57,7 @@ pub use report::{AroundSteps, Report, SkinChange, Status, counts};
 pub use session::{Change, ChangeError, Session, Stepped, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use souple_haptics::Histogram;
-pub use timeline::{trace_events, write_timeline};
+pub use timeline::write_timeline;
 pub use trace::{Trace, write_csv};
 
 use output::{OutputFolder, Plan};

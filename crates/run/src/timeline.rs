@@ -1,13 +1,24 @@
 //! Timelines as files, which trace viewers draw: `chrome://tracing`, Perfetto.
 
+use std::io::Write;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 use souple_engine::Timeline;
 use souple_io::IoError;
 
-/// A timeline in the format of trace events: complete events in microseconds, and the names of threads.
-pub fn trace_events(timeline: &Timeline) -> Value {
+/// Writes a timeline in the format of trace events: complete events in microseconds, and the names of threads.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_timeline(path: &Path, timeline: &Timeline) -> Result<(), IoError> {
+    souple_io::write_file(path, |out| write_events(out, timeline))
+}
+
+/// One event after the other: a million of them as one document would be a gigabyte.
+fn write_events(out: &mut dyn Write, timeline: &Timeline) -> std::io::Result<()> {
+    let told = json!({"version": env!("CARGO_PKG_VERSION"), "left_out": timeline.left_out()});
+    write!(out, r#"{{"displayTimeUnit":"ms","otherData":{told},"traceEvents":["#)?;
     let named = timeline.threads().into_iter().enumerate().map(|(thread, name)| {
         json!({"name": "thread_name", "ph": "M", "pid": 1, "tid": thread, "args": {"name": name}})
     });
@@ -22,24 +33,32 @@ pub fn trace_events(timeline: &Timeline) -> Value {
             "dur": 1e6 * span.duration,
         })
     });
-    json!({
-        "displayTimeUnit": "ms",
-        "otherData": {"version": env!("CARGO_PKG_VERSION"), "left_out": timeline.left_out()},
-        "traceEvents": named.chain(spans).collect::<Vec<Value>>(),
-    })
-}
-
-/// # Errors
-/// The file cannot be written.
-pub fn write_timeline(path: &Path, timeline: &Timeline) -> Result<(), IoError> {
-    let document = trace_events(timeline);
-    souple_io::write_file(path, |out| writeln!(out, "{document}"))
+    for (number, event) in named.chain(spans).enumerate() {
+        let before = if number == 0 { "" } else { "," };
+        write!(out, "{before}\n{event}")?;
+    }
+    writeln!(out, "\n]}}")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::time::Instant;
+
+    use serde_json::Value;
+
+    use super::*;
+
+    fn document(timeline: &Timeline) -> Value {
+        let mut bytes = Vec::new();
+        write_events(&mut bytes, timeline).unwrap();
+        serde_json::from_slice(&bytes).unwrap()
+    }
+
+    /// A timeline on which nothing was noted is a document too.
+    #[test]
+    fn nothing_is_no_event() {
+        assert_eq!(document(&Timeline::begin())["traceEvents"], json!([]));
+    }
 
     /// Every span is an event with a beginning and a length, and every thread has a name.
     #[test]
@@ -48,7 +67,7 @@ mod tests {
         let began = Instant::now();
         timeline.note("step", began);
         timeline.note("picture", began);
-        let events = trace_events(&timeline);
+        let events = document(&timeline);
         let events = events["traceEvents"].as_array().unwrap();
         let complete: Vec<&Value> = events.iter().filter(|event| event["ph"] == "X").collect();
         assert_eq!(events.len(), 3);

@@ -29,6 +29,30 @@ fn full_disks_do_not_silence_a_run() {
     }
 }
 
+/// A trace that cannot be written is refused before the run; one that is lost for all that takes nothing from what the run came to, and a run
+/// that fails leaves its trace.
+#[cfg(target_os = "linux")]
+#[test]
+fn lost_traces_are_told() {
+    let folder = Folder::new("traces");
+    let scene = folder.write("cube.toml", CUBE);
+    let trace = folder.at("missing/trace.json");
+    let errors = souple(["run", &scene, "--trace", &trace, "--json"]).ends(2).json();
+    let error = &errors["errors"][0];
+    assert_eq!((error["code"].as_str(), error["value"].as_str()), (Some("trace"), Some(trace.as_str())));
+    let lost = souple(["run", &scene, "--trace", "/dev/full", "--json", "--quiet"]).ends(1);
+    let report = lost.json();
+    assert_eq!((report["status"].as_str(), report["steps"].as_u64()), (Some("done"), Some(10)));
+    assert!(report["errors"][0]["message"].to_string().contains("the trace is lost"), "{report:#}");
+    assert!(lost.stderr.contains("the trace is lost"), "{lost:#?}");
+    let kept = folder.at("trace.json");
+    souple(["run", &scene, "--trace", &kept, "--record", "/dev/full", "--quiet"]).ends(1);
+    let text = std::fs::read_to_string(&kept).expect("a trace");
+    let document: serde_json::Value = serde_json::from_str(&text).expect("a document");
+    let events = document["traceEvents"].as_array().expect("events");
+    assert_eq!(events.iter().filter(|event| event["name"] == "step").count(), 10);
+}
+
 /// A folder that a run cannot have is refused in one sentence, which does not ask for what it refuses.
 #[test]
 fn folders_are_refused_in_one_sentence() {

@@ -151,6 +151,17 @@ impl Refusal {
         self
     }
 
+    /// The same, with what else went wrong.
+    fn and(mut self, other: &Self) -> Self {
+        for error in &other.errors {
+            if let (Some(text), Some(message)) = (&mut self.text, error["message"].as_str()) {
+                *text += &format!("\nerror: {message}");
+            }
+            self.errors.push(error.clone());
+        }
+        self
+    }
+
     fn print(&self, as_json: bool) {
         if as_json {
             print_json(&json!({ "errors": self.errors }));
@@ -410,20 +421,37 @@ pub fn thread_count(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "expected a whole number, 1 to 1024".to_owned())
 }
 
-/// What keeps the stages of threads, where a file is to tell of them.
-pub fn timeline_of(file: Option<&PathBuf>) -> Timeline {
-    file.map_or_else(Timeline::default, |_| Timeline::begin())
+/// What keeps the stages of threads, where a file is to tell of them; one that cannot be written is found out before the work.
+pub fn timeline_of(file: Option<&PathBuf>) -> Result<Timeline, Refusal> {
+    let Some(path) = file else { return Ok(Timeline::default()) };
+    souple_io::may_be_written(path).map_err(|error| {
+        let (value, expected) = (path.display().to_string(), "a file that can be written");
+        Refusal::request("trace", value, expected, format!("--trace: {error}"))
+    })?;
+    Ok(Timeline::begin())
 }
 
-/// Writes the stages of threads where they are asked for; a file that cannot be written makes the work fail, and takes nothing from what else it
-/// came to.
-pub fn write_trace(file: Option<&PathBuf>, timeline: &Timeline, end: End) -> End {
-    match file.map(|path| souple_run::write_timeline(path, timeline)) {
-        Some(Err(error)) => {
-            print_note(format_args!("error: the trace is lost: {error}"));
-            End::Failed
+/// Writes the stages of threads where they are asked for, however the work ended. The refusal of what could not be written takes nothing from
+/// what else the work came to.
+pub fn write_trace(file: Option<&PathBuf>, timeline: &Timeline) -> Option<Refusal> {
+    let written = souple_run::write_timeline(file?, timeline);
+    if written.is_ok() && timeline.left_out() > 0 {
+        let kept = timeline.spans().len();
+        print_note(format_args!(
+            "warning: the trace has the last {kept} stages; {} before them gave way",
+            timeline.left_out()
+        ));
+    }
+    written.err().map(|error| Refusal::work("io", format!("the trace is lost: {error}")))
+}
+
+impl End {
+    /// The same where nothing more was lost; an interruption is told in any case.
+    fn with(self, lost: Option<&Refusal>) -> Self {
+        match (self, lost) {
+            (Self::Done, Some(_)) => Self::Failed,
+            (end, _) => end,
         }
-        Some(Ok(())) | None => end,
     }
 }
 

@@ -64,6 +64,7 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
             output: if arguments.json { Output::Json } else { Output::Lines },
             quiet: arguments.quiet,
             expect: Strictness::Warn,
+            lost: None,
         };
         return Ok(conclude(&outcome, &manner));
     }

@@ -89,13 +89,20 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         scene_name: scene_path(&arguments.scene).display().to_string(),
         seed: arguments.seed,
         interruption: interruption::heed(),
-        timeline: timeline_of(arguments.trace.as_ref()),
+        timeline: timeline_of(arguments.trace.as_ref())?,
         ..Options::default()
     };
     if let Some(path) = &arguments.resume {
         options.resume = Some(read_resumed(path, &scene.scene_sha256)?);
     }
-    let outcome = play(scene, &options, arguments.quiet)?;
+    let played = play(scene, &options, arguments.quiet);
+    // of a run that failed as well: it may say why
+    let lost = write_trace(arguments.trace.as_ref(), &options.timeline);
+    let outcome = match (played, &lost) {
+        (Ok(outcome), _) => outcome,
+        (Err(refusal), Some(lost)) => return Err(refusal.and(lost)),
+        (Err(refusal), None) => return Err(refusal),
+    };
     // a scene that was changed may well behave otherwise than its author expects
     let usual = if arguments.settings.is_empty() { Strictness::Strict } else { Strictness::Warn };
     let manner = Manner {
@@ -103,9 +110,9 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         output: if arguments.json { Output::Json } else { Output::Lines },
         quiet: arguments.quiet,
         expect: arguments.expect.unwrap_or(usual),
+        lost: lost.as_ref(),
     };
-    let end = conclude(&outcome, &manner);
-    Ok(write_trace(arguments.trace.as_ref(), &options.timeline, end))
+    Ok(conclude(&outcome, &manner))
 }
 
 fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot, Refusal> {
@@ -160,6 +167,8 @@ pub struct Manner<'a> {
     pub output: Output,
     pub quiet: bool,
     pub expect: Strictness,
+    /// What could not be written beside the results.
+    pub lost: Option<&'a Refusal>,
 }
 
 /// Prints what came out, and says how it ended.
@@ -180,8 +189,15 @@ pub fn conclude(outcome: &Outcome, manner: &Manner) -> End {
         if manner.expect == Strictness::Strict { "not as expected" } else { "warning: not as expected" };
     of(Finding::Fails).for_each(|verdict| print_note(format_args!("{word}: {}", verdict.message())));
     let is_left_open = of(Finding::NotJudged).next().is_some();
+    if let Some(lost) = manner.lost {
+        lost.print(false);
+    }
     if manner.output == Output::Json {
-        print_json(&report.to_json());
+        let mut document = report.to_json();
+        if let Some(lost) = manner.lost {
+            document["errors"] = lost.errors.clone().into();
+        }
+        print_json(&document);
     } else if !manner.quiet {
         print_summary(report, manner.out);
     }
@@ -189,14 +205,15 @@ pub fn conclude(outcome: &Outcome, manner: &Manner) -> End {
         let line = format!("expectations: {}", souple_run::summary(verdicts));
         if manner.output == Output::Json || manner.quiet { print_note(line) } else { print_line(line) }
     }
-    match report.status {
+    let end = match report.status {
         Status::Interrupted => End::Interrupted,
         Status::Failed => End::Failed,
         Status::Done if manner.expect == Strictness::Strict && of(Finding::Fails).next().is_some() => {
             End::Failed
         }
         Status::Done => End::Done,
-    }
+    };
+    end.with(manner.lost)
 }
 
 fn print_summary(report: &Report, out: Option<&Path>) {
@@ -245,7 +262,13 @@ pub fn run_default_scene() -> Result<End, Refusal> {
         ..Options::default()
     };
     let outcome = play(scene, &options, false)?;
-    let manner = Manner { out: Some(&out), output: Output::Lines, quiet: false, expect: Strictness::Strict };
+    let manner = Manner {
+        out: Some(&out),
+        output: Output::Lines,
+        quiet: false,
+        expect: Strictness::Strict,
+        lost: None,
+    };
     let end = conclude(&outcome, &manner);
     print_line("Try next:");
     print_line("  souple list materials");

@@ -45,13 +45,17 @@ pub fn view(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::work("page", format!("this program was built without the page: {problem}")));
     }
     use_threads(arguments.threads)?;
-    let timeline = timeline_of(arguments.trace.as_ref());
+    let timeline = timeline_of(arguments.trace.as_ref())?;
     let viewer = open(arguments, arguments.port, &timeline)?.map_err(refuse)?;
     // the first line is the address
     print_line(viewer.address());
     print_note("open it in a browser; Ctrl-C ends");
     let end = watch(viewer)?;
-    Ok(write_trace(arguments.trace.as_ref(), &timeline, end))
+    let lost = write_trace(arguments.trace.as_ref(), &timeline);
+    if let Some(refusal) = &lost {
+        refusal.print(false);
+    }
+    Ok(end.with(lost.as_ref()))
 }
 
 /// Greets, shows the default scene, and says what to try next: what the program does without arguments. Where the port
