@@ -34,6 +34,7 @@ pub struct FrameCost {
 pub fn frame_cost(scene: Scene, samples: usize) -> Result<FrameCost, String> {
     let hub = Hub::default();
     let mut stage = Stage::new(scene, "measured".to_owned(), 0, &Interruption::default(), &hub)?;
+    stage.begin_samples(&hub);
     stage.fulfil(0, Wish::Colour(Some("displacement".to_owned())), &hub)?;
     let (page, _outbox) = hub.join();
     hub.welcome(page);

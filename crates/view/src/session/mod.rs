@@ -106,7 +106,8 @@ impl Live {
         inputs: Inputs,
     ) -> Result<Self, String> {
         let interruption = inputs.interruption().clone();
-        let stage = Stage::new(scene, name, 0, &interruption, &hub)?;
+        let mut stage = Stage::new(scene, name, 0, &interruption, &hub)?;
+        stage.begin_samples(&hub);
         let painter = Painter::start(Arc::clone(&hub));
         let painter = painter.map_err(|error| format!("no thread for pictures: {error}"))?;
         let now = Instant::now();
@@ -145,6 +146,10 @@ impl Live {
                     Err(TryRecvError::Empty) => break,
                     Err(TryRecvError::Disconnected) => return,
                 }
+            }
+            if self.painter.take_fault() {
+                let message = "the program failed over a picture: please report it";
+                self.set_mode(Mode::Failed(message.to_owned()));
             }
             self.tell_news();
             let mut now = Instant::now();
@@ -282,7 +287,6 @@ impl Live {
     }
 
     fn welcome(&mut self, page: PageId) {
-        self.hub.welcome(page);
         let greeting = self.greeting.get_or_insert_with(|| {
             json!({
                 "version": env!("CARGO_PKG_VERSION"),
@@ -298,6 +302,8 @@ impl Live {
             self.set_mode(Mode::Playing);
         }
         self.hub.tell(page, document("status", self.status()));
+        // pictures are shown by another thread: none may come before what they are of
+        self.hub.welcome(page);
         self.is_changed = true;
     }
 
@@ -404,6 +410,8 @@ impl Live {
         self.stage = stage;
         self.stage.set_looks(looks);
         self.stage.describe(&mut |message| self.hub.tell_all(&message));
+        // they go with pictures, also with one of the scene before: none may come before what they are of
+        self.stage.begin_samples(&self.hub);
         self.stage.describe_inside(&self.hub);
         // who asks for another world wants to see it go
         if matches!(self.mode, Mode::Failed(_)) || !matches!(purpose, Purpose::Reset) {

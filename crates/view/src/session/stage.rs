@@ -113,14 +113,16 @@ impl Stage {
         hub: &Hub,
     ) -> Result<Self, String> {
         let (view, description) = (scene.picture, std::mem::take(&mut scene.description));
-        let options = Options { scene_name: name, interruption: interruption.clone(), ..Options::default() };
+        let options = Options {
+            scene_name: name,
+            interruption: interruption.clone(),
+            timeline: hub.timeline().clone(),
+            ..Options::default()
+        };
         let mut session = Session::start(scene, &options).map_err(|error| error.to_string())?;
         session.forecast();
-        session.world.note_on(hub.timeline());
-        let columns = ENERGY_COLUMNS.len()
-            + session.probes.iter().map(|probe| if probe.gives_vector() { 3 } else { 1 }).sum::<usize>();
         let period = session.world.model().period;
-        let mut stage = Self {
+        Ok(Self {
             number,
             description,
             origin: Origin::File,
@@ -138,13 +140,18 @@ impl Stage {
             stages: [0.0; 5],
             iterations_per_step: [0.0; 2],
             sample_every: (SAMPLE_DISTANCE / period).ceil().max(1.0) as u64,
-            row: Vec::with_capacity(columns),
+            row: Vec::new(),
             governor: Governor::new(session.world.model()),
             session,
-        };
-        hub.samples().begin(number, columns);
-        stage.sample(hub);
-        Ok(stage)
+        })
+    }
+
+    /// Samples are of this scene from now on, beginning with that of the world as it stands.
+    pub fn begin_samples(&mut self, hub: &Hub) {
+        let probes = self.session.probes.iter().map(|probe| if probe.gives_vector() { 3 } else { 1 });
+        let columns = ENERGY_COLUMNS.len() + probes.sum::<usize>();
+        hub.samples().begin(self.number, columns);
+        self.sample(hub);
     }
 
     pub fn session(&self) -> &Session {
