@@ -47,7 +47,7 @@ mod stepper_orders;
 mod strain_measures;
 mod switching;
 mod thick_sphere;
-mod tools;
+pub(crate) mod tools;
 mod traction;
 mod two_steppers;
 mod views;

@@ -60,7 +60,7 @@ const HELD_ON_LIVER: Case = Case {
 };
 
 /// A world that tells a hundred times a second.
-const SELDOM: [&str; 2] = ["world.period=\"10 ms\"", "systems.main.stepper.halvings=7"];
+pub(crate) const SELDOM: [&str; 2] = ["world.period=\"10 ms\"", "systems.main.stepper.halvings=7"];
 
 /// Six centimetres in six seconds.
 const SLOWLY: &[&str] = &[
