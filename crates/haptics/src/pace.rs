@@ -155,8 +155,6 @@ impl Earlier {
     fn restore(&self) {
         // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
         unsafe {
-            // 0 would be the slack that the thread began with: what could not be read
-            libc::prctl(libc::PR_SET_TIMERSLACK, self.slack.max(0));
             if let Some((policy, sched_priority)) = self.place {
                 libc::pthread_setschedparam(
                     libc::pthread_self(),
@@ -164,6 +162,8 @@ impl Earlier {
                     &libc::sched_param { sched_priority },
                 );
             }
+            // real-time threads have no slack, and that of others begins anew with their policy; 0, where none could be read, is what it began with
+            libc::prctl(libc::PR_SET_TIMERSLACK, self.slack.max(0));
         }
     }
 }
