@@ -9,8 +9,8 @@
 //! start, `J W Jᵀ δλ = (w − g(x', t'))/h²`, which is symmetric and as sparse as relations share points. Relations that hold at
 //! both ends of a step are those of SHAKE (Ryckaert, Ciccotti & Berendsen 1977): it is symplectic, and of second order.
 //!
-//! Relations may repeat each other: the matrix is then singular, and its diagonal is raised by [`RAISE`] of itself. What is left
-//! of that is gone after a few of the solves that are made anyway, and of all forces that do the same those with the least
+//! Each component is scaled so that the diagonal of `J W Jᵀ` is one. Relations may repeat each other: the matrix is then singular, and its
+//! diagonal is raised by [`RAISE`]. What is left of that is gone after a few of the solves that are made anyway, and of all forces that do the same those with the least
 //! `Σ (J W Jᵀ)_cc λ_c²` are found. Relations that contradict each other are told, not shared out.
 
 use std::sync::Arc;
@@ -26,13 +26,30 @@ use crate::system::{System, SystemWorkspace};
 /// Of a diagonal entry, what is added to it: far above rounding, so that relations which repeat others have a pivot, and far
 /// below the least eigenvalue of the scaled matrix of thousands of rods in a row, `(π/n)²/2`, so that solves converge.
 const RAISE: f64 = 1e-8;
-/// How far off a relation may be, of what it changes by when its points move by their greatest coordinate: places are known to
-/// `2e-16` of that, and sums over thousands of them to this.
+/// How far off a relation may be, of what it changes by when its points move by the greatest coordinate of any of them, and of what it
+/// was off by before any force: places are known to `2e-16` of that, and sums over thousands of them to this.
 const TOLERANCE: f64 = 1e-12;
 /// Each takes a share of the error away that is the square of the angle by which gradients turn within the step.
 const MOST_SOLVES: u32 = 50;
 /// On the diagonal of a component that no force can change: it is not solved for.
 const IDLE: f64 = 1.0;
+
+/// What is known of a relation before a step starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Earlier {
+    /// Its value one step before.
+    Value(Vec3),
+    /// `ġ` at the start, where no step led there.
+    Rate(Vec3),
+}
+
+/// In the memory of a force, what the numbers of its relations beside the multipliers are; zero where no step came before.
+mod known {
+    /// Values where the step before started.
+    pub const VALUES: f64 = 1.0;
+    /// Rates of the start, before a trajectory moved the velocity.
+    pub const RATES: f64 = 2.0;
+}
 
 /// What of a force relates points.
 pub trait Binding: Send + Sync {
@@ -47,16 +64,40 @@ pub trait Binding: Send + Sync {
     /// `∂g/∂x` for each of its rows in turn: the gradient of a component in each row of the matrix.
     fn add_gradients(&self, relation: usize, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
 
-    /// The value that it is to have where a step of `timestep` from `start` ends, by those one step before and where it starts.
-    fn wanted(&self, relation: usize, values: [Vec3; 2], start: f64, timestep: f64) -> Vec3;
+    /// `ġ = J v + ∂g/∂t` of points that move so.
+    fn rate(&self, relation: usize, positions: &[Vec3], velocities: &[Vec3], time: f64) -> Vec3;
+
+    /// Whether what it changes by the second time is told, and not what it is to be.
+    fn is_told(&self, relation: usize) -> bool;
+
+    /// The value that it is to have where a step of `timestep` from `start` ends, by what was before and its value where it starts.
+    fn wanted(&self, relation: usize, earlier: Earlier, now: Vec3, start: f64, timestep: f64) -> Vec3;
 
     /// What it is, in words.
     fn describe(&self, relation: usize) -> String;
 }
 
-/// Numbers in the memory of a force with so many relations: the work that it has done [J], then the multipliers.
+/// Numbers in the memory of a force with so many relations: the work that it has done [J], the multipliers, what is known of before, and that
+/// of each relation.
 pub fn memory_len(relations: usize) -> usize {
-    1 + 3 * relations
+    2 + 6 * relations
+}
+
+/// Where what is known of before stands.
+fn known_at(memory: &[f64]) -> usize {
+    memory.len() / 2
+}
+
+/// What is known of a relation from before: values or rates.
+fn earlier(memory: &[f64], relation: usize) -> Vec3 {
+    let first = known_at(memory) + 1 + 3 * relation;
+    Vec3::new(memory[first], memory[first + 1], memory[first + 2])
+}
+
+fn set_earlier(memory: &mut [f64], relation: usize, kind: f64, value: Vec3) {
+    let at = known_at(memory);
+    memory[at] = kind;
+    memory[at + 1 + 3 * relation..at + 4 + 3 * relation].copy_from_slice(&value.to_array());
 }
 
 /// The multipliers of a relation, by the memory of its force.
@@ -91,18 +132,27 @@ pub fn add_forces(binding: &dyn Binding, at: &Configuration, out: &mut [Vec3]) {
 #[derive(Debug, Default)]
 pub(crate) struct Bound {
     structure: Option<Structure>,
-    /// For each entry of the structure.
+    /// For each entry of the structure, scaled.
     gradients: Vec<Mat3>,
+    /// Of each component `1/√(J W Jᵀ)_cc`, one where no force changes it.
+    scales: Vec<Vec3>,
+    /// How far off each component may be.
+    near: Vec<Vec3>,
+    /// What relations are where the step starts.
+    now: Vec<Vec3>,
     /// By row [1/kg].
     inverse_masses: Vec<Mat3>,
     /// One step before, and where the step leads [m].
     before: Vec<Vec3>,
     places: Vec<Vec3>,
+    /// Of points where the step starts, and where it leads [m/s].
     velocities: Vec<Vec3>,
+    led: Vec<Vec3>,
     wanted: Vec<Vec3>,
     /// Of each relation, in the units of its components.
     off: Vec<Vec3>,
     change: Vec<Vec3>,
+    /// Scaled, as are those of the step before.
     multipliers: Vec<Vec3>,
     /// The multipliers that the step before ended with.
     before_step: Vec<Vec3>,
@@ -175,7 +225,7 @@ impl Structure {
         Ok(Self { relations, starts, rows, products, matrix: BlockMatrix::zeros(pattern), solver })
     }
 
-    /// `W Jᵀ λ` of all relations, scaled and added to rows.
+    /// `W Jᵀ λ` of all relations, times a number and added to rows.
     fn spread(
         &self,
         scale: f64,
@@ -211,6 +261,18 @@ fn unsolved(error: SolveError) -> StepError {
     StepError::Linear { error: error.to_string(), block: None }
 }
 
+/// What of a relation a step cannot go on from.
+fn fault(step: &Step, structure: &Structure, relation: usize, what: &str) -> StepError {
+    let (force, number) = structure.relations[relation];
+    let described = step.system.binding(force).map_or_else(String::new, |it| it.describe(number));
+    StepError::Fault {
+        force: step.system.forces[force].name().to_owned(),
+        row: structure.rows[structure.starts[relation]] as usize,
+        what: format!("{described} {what}"),
+        time: step.start,
+    }
+}
+
 impl Bound {
     fn keep(
         &mut self,
@@ -222,14 +284,41 @@ impl Bound {
             Some(structure) => structure,
             None => Structure::new(step.system).map_err(unsolved)?,
         };
-        self.lead(step, ws);
-        self.look(step, &structure, &ws.rows.positions);
-        self.assemble(&mut structure);
-        structure.solver.factorize(&structure.matrix).map_err(unsolved)?;
-        self.take_off(step, &structure, next);
-        self.solve(step, &structure)?;
-        self.give(step.system, &structure, next, &mut ws.row_force);
+        let kept = match structure.relations.is_empty() {
+            true => Ok(()),
+            false => self.keep_in(&mut structure, step, next, ws),
+        };
         self.structure = Some(structure);
+        kept
+    }
+
+    fn keep_in(
+        &mut self,
+        structure: &mut Structure,
+        step: &Step,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<(), StepError> {
+        self.lead(step, ws);
+        self.look(step, structure, &ws.rows.positions, next)?;
+        self.scale(step, structure)?;
+        self.assemble(structure);
+        structure.solver.factorize(&structure.matrix).map_err(|error| match error {
+            SolveError::NotPositiveDefinite { block, .. } | SolveError::Singular { block, .. }
+                if block < structure.relations.len() =>
+            {
+                fault(
+                    step,
+                    structure,
+                    block,
+                    "leaves no force that keeps it: its gradients vanish, or are too unlike those of others",
+                )
+            }
+            error => unsolved(error),
+        })?;
+        self.take_off(step, structure, next);
+        self.solve(step, structure)?;
+        self.give(step.system, structure, next, &mut ws.row_force);
         Ok(())
     }
 
@@ -237,11 +326,12 @@ impl Bound {
     /// too would never leave.
     fn take_off(&mut self, step: &Step, structure: &Structure, next: &SystemState) {
         self.before_step.clear();
-        self.before_step.extend(
-            structure.relations.iter().map(|(force, relation)| {
-                multiplier(&next.memory[step.system.memory_range(*force)], *relation)
-            }),
-        );
+        self.before_step.extend(structure.relations.iter().zip(&self.scales).map(
+            |((force, relation), scale)| {
+                let multiplier = multiplier(&next.memory[step.system.memory_range(*force)], *relation);
+                Vec3::from_array([0, 1, 2].map(|axis| multiplier[axis] / scale[axis]))
+            },
+        ));
         let scale = -step.timestep * step.timestep;
         structure.spread(scale, &self.before_step, &self.gradients, &self.inverse_masses, &mut self.places);
     }
@@ -252,14 +342,18 @@ impl Bound {
         self.multipliers.clear();
         self.multipliers.resize(structure.relations.len(), Vec3::ZERO);
         let mut solves = 0;
-        while let Some(worst) = self.farthest_off(step, structure) {
+        self.allow(step, structure);
+        while let Some(worst) = self.farthest_off(step, structure)? {
             if solves == MOST_SOLVES {
                 return Err(self.unkept(step, structure, worst));
             }
             solves += 1;
             self.change.clear();
-            let active = self.off.iter().zip(&self.active);
-            self.change.extend(active.map(|(off, active)| Mat3::from_diagonal(*active) * *off / square));
+            let active = self.off.iter().zip(self.active.iter().zip(&self.scales));
+            let scaled = |(off, (active, scale)): (&Vec3, (&Vec3, &Vec3))| {
+                Mat3::from_diagonal(*active) * (Mat3::from_diagonal(*scale) * *off) / square
+            };
+            self.change.extend(active.map(scaled));
             structure.solver.solve(&mut self.change).map_err(unsolved)?;
             structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
             for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
@@ -293,6 +387,14 @@ impl Bound {
         let points = || q.iter().zip(v);
         self.before.clear();
         self.before.extend(points().map(|(x, v)| *x - *v * timestep));
+        self.led.clear();
+        self.led.extend_from_slice(v);
+        // what is led was where it was led to, however it has been accelerated; there is nothing before the start
+        let earlier = (step.start - timestep).max(0.0);
+        system.impose_constraints(&mut self.before, &mut self.led, earlier, around.load);
+        self.places.clear();
+        self.places.extend_from_slice(q);
+        system.impose_constraints(&mut self.places, &mut self.led, step.start, around.load);
         let forces = ws.row_force.iter().zip(&system.mass.diagonal);
         self.velocities.clear();
         self.velocities
@@ -303,18 +405,108 @@ impl Bound {
     }
 
     /// Gradients where the step starts, and the values that are wanted where it ends.
-    fn look(&mut self, step: &Step, structure: &Structure, positions: &[Vec3]) {
+    fn look(
+        &mut self,
+        step: &Step,
+        structure: &Structure,
+        positions: &[Vec3],
+        next: &SystemState,
+    ) -> Result<(), StepError> {
         let Step { system, start, timestep, .. } = *step;
         self.gradients.clear();
         self.wanted.clear();
-        for (force, relation) in &structure.relations {
+        self.now.clear();
+        for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(binding) = system.binding(*force) else { continue };
             binding.add_gradients(*relation, positions, start, &mut self.gradients);
-            // there is nothing before the start: a formula may have no value there
-            let before = binding.value(*relation, &self.before, (start - timestep).max(0.0));
             let now = binding.value(*relation, positions, start);
-            self.wanted.push(binding.wanted(*relation, [before, now], start, timestep));
+            self.now.push(now);
+            let memory = &next.memory[system.memory_range(*force)];
+            let earlier = self.earlier(step, structure, index, (positions, memory));
+            let wanted = binding.wanted(*relation, earlier, now, start, timestep);
+            let entries = structure.starts[index]..structure.starts[index + 1];
+            if !(now.is_finite() && self.gradients[entries].iter().all(|gradient| gradient.is_finite())) {
+                return Err(fault(step, structure, index, "has no value, or no slope, where masses are"));
+            }
+            if !wanted.is_finite() {
+                return Err(fault(step, structure, index, "is told what is not finite"));
+            }
+            self.wanted.push(wanted);
         }
+        Ok(())
+    }
+
+    /// What a relation was before: its value where the last step started, if a step from there has led here; otherwise, at the start and after edits,
+    /// what it changes by in a second.
+    fn earlier(
+        &self,
+        step: &Step,
+        structure: &Structure,
+        index: usize,
+        (positions, memory): (&[Vec3], &[f64]),
+    ) -> Earlier {
+        let Step { system, start, timestep, .. } = *step;
+        let (force, relation) = structure.relations[index];
+        let Some(binding) = system.binding(force) else { return Earlier::Rate(Vec3::ZERO) };
+        // there is nothing before the start: a formula may have no value there
+        let before = || binding.value(relation, &self.before, (start - timestep).max(0.0));
+        if binding.is_told(relation) {
+            return Earlier::Value(before());
+        }
+        let remembered = earlier(memory, relation);
+        let kind = memory[known_at(memory)];
+        if kind == known::RATES {
+            return Earlier::Rate(remembered);
+        }
+        if kind == known::VALUES {
+            let before = before();
+            let near = self.tolerance(structure, index);
+            if (0..3).all(|axis| (before[axis] - remembered[axis]).abs() <= near[axis]) {
+                return Earlier::Value(before);
+            }
+        }
+        Earlier::Rate(binding.rate(relation, positions, &self.led, start))
+    }
+
+    /// How far off a relation may be by the coordinates of its own points, by gradients that are not scaled.
+    fn tolerance(&self, structure: &Structure, index: usize) -> Vec3 {
+        let entries = structure.starts[index]..structure.starts[index + 1];
+        let rows = structure.rows[entries.clone()].iter().map(|row| *row as usize);
+        let coordinates = rows.flat_map(|row| [self.before[row], self.places[row]]).flat_map(Vec3::to_array);
+        let reach = coordinates.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let gradients = &self.gradients[entries];
+        let slope = |component: usize| -> f64 {
+            gradients.iter().map(|gradient| gradient.row(component).length()).sum()
+        };
+        Vec3::from_array([0, 1, 2].map(|component| TOLERANCE * slope(component) * reach))
+    }
+
+    /// Scales components so that each changes by one under its own multiplier.
+    fn scale(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+        self.scales.clear();
+        self.active.clear();
+        self.near.clear();
+        for index in 0..structure.relations.len() {
+            self.near.push(self.tolerance(structure, index));
+            let entries = structure.starts[index]..structure.starts[index + 1];
+            let of = |entry: usize| {
+                let inverse = self.inverse_masses[structure.rows[entry] as usize];
+                (self.gradients[entry] * inverse).mul_transpose(&self.gradients[entry]).diagonal()
+            };
+            let diagonal: Vec3 = entries.clone().map(of).sum();
+            if !diagonal.is_finite() {
+                return Err(fault(step, structure, index, "is too steep to compute with where masses are"));
+            }
+            let diagonal = diagonal.to_array();
+            let is_active = diagonal.map(|entry| entry > 0.0);
+            self.active.push(Vec3::from_array(is_active.map(|it| if it { 1.0 } else { 0.0 })));
+            let scale = Vec3::from_array(diagonal.map(|it| if it > 0.0 { it.sqrt().recip() } else { 1.0 }));
+            self.scales.push(scale);
+            for gradient in &mut self.gradients[entries] {
+                *gradient = Mat3::from_diagonal(scale) * *gradient;
+            }
+        }
+        Ok(())
     }
 
     // J W Jᵀ
@@ -326,48 +518,51 @@ impl Bound {
                 (self.gradients[*a as usize] * *inverse).mul_transpose(&self.gradients[*b as usize]);
             structure.matrix.add_at(*slot as usize, &product);
         }
-        self.active.clear();
-        for relation in 0..structure.relations.len() {
+        for (relation, active) in self.active.iter().enumerate() {
             let slot = structure.matrix.pattern().diagonal_slot(relation);
-            let diagonal = structure.matrix.values()[slot].diagonal();
-            let is_active = diagonal.to_array().map(|entry| if entry > 0.0 { 1.0 } else { 0.0 });
-            self.active.push(Vec3::from_array(is_active));
-            let raised = diagonal.to_array().map(|entry| if entry > 0.0 { RAISE * entry } else { IDLE });
+            let raised = active.to_array().map(|active| if active > 0.0 { RAISE } else { IDLE });
             structure.matrix.add_at(slot, &Mat3::from_diagonal(Vec3::from_array(raised)));
         }
     }
 
+    /// Lets relations be off by a share of what they are before any force too: the way to where they hold may be longer than places are far.
+    fn allow(&mut self, step: &Step, structure: &Structure) {
+        for (index, (force, relation)) in structure.relations.iter().enumerate() {
+            let Some(binding) = step.system.binding(*force) else { continue };
+            let off = self.wanted[index] - binding.value(*relation, &self.places, step.end());
+            self.near[index] += Vec3::from_array(off.to_array().map(|off| TOLERANCE * off.abs()));
+        }
+    }
+
     /// The relation that is farthest from what it is to be where the step leads; `None` where all are near enough.
-    fn farthest_off(&mut self, step: &Step, structure: &Structure) -> Option<usize> {
-        let system = step.system;
-        let coordinates = structure.rows.iter().flat_map(|row| self.places[*row as usize].to_array());
-        let scale = coordinates.fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    fn farthest_off(&mut self, step: &Step, structure: &Structure) -> Result<Option<usize>, StepError> {
         self.off.clear();
         let mut worst: Option<(usize, f64)> = None;
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
-            let Some(binding) = system.binding(*force) else { continue };
+            let Some(binding) = step.system.binding(*force) else { continue };
             let off = self.wanted[index] - binding.value(*relation, &self.places, step.end());
+            if !off.is_finite() {
+                return Err(fault(step, structure, index, "has no value where the step leads"));
+            }
             self.off.push(off);
-            let entries = structure.starts[index]..structure.starts[index + 1];
-            let gradients = &self.gradients[entries];
             for component in 0..3 {
-                let slope: f64 = gradients.iter().map(|gradient| gradient.row(component).length()).sum();
-                let (off, near) = (off[component].abs(), TOLERANCE * slope * scale);
+                let (off, near) = (off[component].abs(), self.near[index][component]);
                 let by = if off <= near { 0.0 } else { off / near };
-                // what is no number is never near
-                if by.is_nan() || (by > 0.0 && worst.is_none_or(|(_, known)| by > known)) {
-                    worst = Some((index, if by.is_nan() { f64::INFINITY } else { by }));
+                if by > 0.0 && worst.is_none_or(|(_, known)| by > known) {
+                    worst = Some((index, by));
                 }
             }
         }
-        worst.map(|(index, _)| index)
+        Ok(worst.map(|(index, _)| index))
     }
 
     /// Adds the change of forces to those on rows, along what is free, and remembers multipliers and work.
     fn give(&self, system: &System, structure: &Structure, next: &mut SystemState, row_force: &mut [Vec3]) {
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let memory = &mut next.memory[system.memory_range(*force)];
-            set_multiplier(memory, *relation, self.multipliers[index]);
+            let multiplier = Mat3::from_diagonal(self.scales[index]) * self.multipliers[index];
+            set_multiplier(memory, *relation, multiplier);
+            set_earlier(memory, *relation, known::VALUES, self.now[index]);
             for entry in structure.starts[index]..structure.starts[index + 1] {
                 let row = structure.rows[entry] as usize;
                 let whole = self.gradients[entry].transpose_apply(self.multipliers[index]);
@@ -378,6 +573,16 @@ impl Bound {
                 // ½ m v'² − ½ m v² = f·(v + v') h/2
                 memory[0] += 0.5 * whole.dot(self.places[row] - self.before[row]);
             }
+        }
+    }
+
+    /// Remembers what relations change by in a second where a step was last sought from: a trajectory is about to move the velocity.
+    pub(crate) fn remember_rates(&self, step: &Step, positions: &[Vec3], memory: &mut [f64]) {
+        let relations = self.structure.iter().flat_map(|structure| &structure.relations);
+        for (force, relation) in relations {
+            let Some(binding) = step.system.binding(*force) else { continue };
+            let rate = binding.rate(*relation, positions, &self.led, step.start);
+            set_earlier(&mut memory[step.system.memory_range(*force)], *relation, known::RATES, rate);
         }
     }
 
@@ -392,6 +597,10 @@ impl Bound {
             &self.multipliers,
             &self.before_step,
             &self.active,
+            &self.scales,
+            &self.near,
+            &self.now,
+            &self.led,
         ];
         let matrices = self.gradients.capacity() + self.inverse_masses.capacity();
         vectors.into_iter().map(|vector| size_of::<Vec3>() * vector.capacity()).sum::<usize>()

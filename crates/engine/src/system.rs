@@ -199,8 +199,17 @@ impl System {
         }
         let binds = self.forces.iter().find(|force| force.binding().is_some());
         if let Some(force) = binds.filter(|_| !self.stepper.binds_points(self)) {
+            let hindered = if !self.mass.is_lumped() {
+                "; masses of this system are not lumped"
+            } else if self.kinematics.has_frames() {
+                "; this system has frames"
+            } else if !self.kinematics.is_trivial() {
+                "; some points of this system follow others"
+            } else {
+                ""
+            };
             return Some(format!(
-                "`{}` relates points by forces that are solved for, which `symplectic_euler` and `t_simulation` do of points with lumped masses",
+                "`{}` relates points by forces that are solved for, which `symplectic_euler` and `t_simulation` do of points with lumped masses{hindered}",
                 force.name()
             ));
         }

@@ -132,7 +132,7 @@ pub enum StepError {
     )]
     PairsUnsettled { searches: u32 },
     #[error(
-        "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: what it joins is held elsewhere, or others contradict it"
+        "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: it is held elsewhere, contradicted by others, or turns too far in one step: take a smaller one"
     )]
     Unkept { force: String, relation: String, off: f64, row: usize, time: f64 },
     #[error("{0}")]

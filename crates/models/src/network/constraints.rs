@@ -1,15 +1,16 @@
 //! Constraints between masses: relations that are kept by forces.
 //!
 //! Kept exactly, the forces are those that lead a relation back as a critically damped oscillator of the time `τ` would,
-//! `D'' + (2/τ) D' + D/τ² = 0` (Barzel & Barr 1988): its exact solution is `D_{n+1} = 2 r D_n − r² D_{n−1}` with `r = e^{−h/τ}`, and that is
-//! what a step is told to end at ([`souple_engine::binding`]). What holds stays, at any step; with `τ = 0` what does not hold does after one.
+//! `D'' + (2/τ) D' + D/τ² = 0` (Barzel & Barr 1988): its exact solution is `D_{n+1} = 2 r D_n − r² D_{n−1}` with `r = e^{−h/τ}`, and
+//! `r (D_n + h (D'_n + D_n/τ))` where no step led to where masses are: at the start, and after edits. That is what a step is told to end at
+//! ([`souple_engine::binding`]). What holds and does not change stays, at any step; with `τ = 0` what does not hold does after one.
 //!
 //! By the augmented Lagrangian (Platt & Barr 1988) they are `−Jᵀ (λ + c g + z ġ)` with `λ' = k g`: an ordinary force, for any stepper, that
 //! keeps the relation in the end only. A mass on such a spring is stable where `z c > k m`, with its own mass `m` and `z` from whatever damps it.
 
 use std::any::Any;
 
-use souple_engine::binding::{self, Binding};
+use souple_engine::binding::{self, Binding, Earlier};
 use souple_engine::tangent::add_block;
 use souple_engine::{
     Configuration, Declaration, Energy, Force, LinkShown, LinkState, Pair, Scratch, TangentWeights,
@@ -29,14 +30,15 @@ pub enum Keeping {
     Augmented(Augmented),
 }
 
-/// In units that make each a force when it is multiplied with `g` [m], [m²], [m³] and its gradient.
+/// In units that make each a force when it is multiplied with `g` and its gradient: N/m, N/m³ and N/m⁵ of the stiffness for `g` in m, m² and m³; what
+/// the formula of a surface makes of it otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Augmented {
-    /// `c`, per metre.
+    /// `c`.
     pub stiffness: f64,
-    /// `z`, per metre and second.
+    /// `z`, that times a second.
     pub damping: f64,
-    /// `k`, per metre, by which the multiplier grows in a second.
+    /// `k`, that per second.
     pub rate: f64,
 }
 
@@ -63,7 +65,7 @@ impl Constraints {
         let kept = binding::multiplier(at.memory, relation);
         let Keeping::Augmented(Augmented { stiffness, damping, .. }) = self.keeping else { return kept };
         let relation = &self.relations[relation];
-        let rate = if damping > 0.0 { rate(&**relation, at) } else { Vec3::ZERO };
+        let rate = if damping > 0.0 { rate_at(&**relation, at) } else { Vec3::ZERO };
         -(kept + relation.value(at.positions, at.time) * stiffness + rate * damping)
     }
 
@@ -96,12 +98,21 @@ impl Constraints {
     }
 }
 
-/// `ġ` of the masses, as they move.
-fn rate(relation: &dyn Relation, at: &Configuration) -> Vec3 {
-    let mut gradients = Vec::new();
-    relation.add_gradients(at.positions, at.time, &mut gradients);
-    let rows = relation.rows().iter().zip(&gradients);
-    rows.map(|(row, gradient)| *gradient * at.velocities[*row as usize]).sum()
+/// `ġ = J v + ∂g/∂t` of the masses, as they move.
+fn rate(
+    relation: &dyn Relation,
+    (positions, velocities, time): (&[Vec3], &[Vec3], f64),
+    gradients: &mut Vec<Mat3>,
+) -> Vec3 {
+    gradients.clear();
+    relation.add_gradients(positions, time, gradients);
+    let rows = relation.rows().iter().zip(gradients.iter());
+    let moved: Vec3 = rows.map(|(row, gradient)| *gradient * velocities[*row as usize]).sum();
+    moved + relation.time_rate(positions, time)
+}
+
+fn rate_at(relation: &dyn Relation, at: &Configuration) -> Vec3 {
+    rate(relation, (at.positions, at.velocities, at.time), &mut Vec::new())
 }
 
 impl Binding for Constraints {
@@ -121,13 +132,29 @@ impl Binding for Constraints {
         self.relations[relation].add_gradients(positions, time, gradients);
     }
 
-    fn wanted(&self, relation: usize, [before, now]: [Vec3; 2], start: f64, timestep: f64) -> Vec3 {
+    fn rate(&self, relation: usize, positions: &[Vec3], velocities: &[Vec3], time: f64) -> Vec3 {
+        rate(&*self.relations[relation], (positions, velocities, time), &mut Vec::new())
+    }
+
+    fn is_told(&self, relation: usize) -> bool {
+        self.relations[relation].second_rate(0.0).is_some()
+    }
+
+    fn wanted(&self, relation: usize, earlier: Earlier, now: Vec3, start: f64, timestep: f64) -> Vec3 {
         if let Some(second_rate) = self.relations[relation].second_rate(start) {
-            return now * 2.0 - before + second_rate * (timestep * timestep);
+            let drift = match earlier {
+                Earlier::Value(before) => now - before,
+                Earlier::Rate(rate) => rate * timestep,
+            };
+            return now + drift + second_rate * (timestep * timestep);
         }
         let Keeping::Exact { time } = self.keeping else { return Vec3::ZERO };
         let ratio = if time > 0.0 { (-timestep / time).exp() } else { 0.0 };
-        now * (2.0 * ratio) - before * (ratio * ratio)
+        match earlier {
+            Earlier::Value(before) => now * (2.0 * ratio) - before * (ratio * ratio),
+            Earlier::Rate(rate) if time > 0.0 => (now + (rate + now / time) * timestep) * ratio,
+            Earlier::Rate(_) => Vec3::ZERO,
+        }
     }
 
     fn describe(&self, relation: usize) -> String {
@@ -236,13 +263,18 @@ impl Force for Constraints {
         });
     }
 
-    // λ' = k g; the work of λ and of the damper
+    // λ' = k g; the work of λ and of the damper on masses, and of what moves the relation on its spring
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        let Keeping::Augmented(Augmented { damping, rate: growth, .. }) = self.keeping else { return };
+        let Keeping::Augmented(Augmented { stiffness, damping, rate: growth }) = self.keeping else {
+            return;
+        };
         for (index, relation) in self.relations.iter().enumerate() {
-            let (rate, kept) = (rate(&**relation, at), binding::multiplier(at.memory, index));
-            memory[0] -= timestep * (kept + rate * damping).dot(rate);
-            let grown = kept + relation.value(at.positions, at.time) * (growth * timestep);
+            let (rate, kept) = (rate_at(&**relation, at), binding::multiplier(at.memory, index));
+            let (value, led) =
+                (relation.value(at.positions, at.time), relation.time_rate(at.positions, at.time));
+            memory[0] -= timestep * (kept + rate * damping).dot(rate - led);
+            memory[0] += timestep * stiffness * value.dot(led);
+            let grown = kept + value * (growth * timestep);
             binding::set_multiplier(memory, index, grown);
         }
     }

@@ -218,11 +218,11 @@ pub fn add_forces(
             forces.push(Box::new(crowd));
         }
     }
-    for index in 0..network.constraints.len() {
-        if let Some(constraints) = constraints::of(draft, body, network, index) {
-            forces.push(Box::new(constraints));
-        }
-    }
+    let constraints: Vec<_> = (0..network.constraints.len())
+        .filter_map(|index| constraints::of(draft, body, network, index))
+        .collect();
+    constraints::check_size(network, body, &constraints.iter().collect::<Vec<_>>(), draft.log);
+    forces.extend(constraints.into_iter().map(|constraints| Box::new(constraints) as Box<dyn Force>));
 }
 
 fn law(

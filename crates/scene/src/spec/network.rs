@@ -499,6 +499,12 @@ impl Network {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no group of masses `{name}`{hint}");
                 reader.log().add(Code::UnknownName, &constraint.site, message, crate::keys::one_of(&known));
+                continue;
+            }
+            let Some(numbers) = self.numbers_of(name) else { continue };
+            if numbers.end as usize > self.mass_count() {
+                let message = format!("constraints are between masses, and `{name}` is points of view");
+                reader.log().add(Code::Conflict, &constraint.site, message, "groups, parts or ports");
             }
         }
     }

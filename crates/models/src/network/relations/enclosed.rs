@@ -47,6 +47,10 @@ impl Relation for Area {
             .extend((0..count).map(|i| first_row((at(i + 1) - at(i + count - 1)).cross(self.normal) * 0.5)));
     }
 
+    fn time_rate(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        Vec3::X * (-self.part.differentiate(&[time], 0).derivative * self.area)
+    }
+
     fn describe(&self) -> String {
         format!("an area of {} m²", self.area)
     }
@@ -107,6 +111,10 @@ impl Relation for Volume {
             }
         }
         gradients.extend(by.into_iter().map(first_row));
+    }
+
+    fn time_rate(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        Vec3::X * (-self.part.differentiate(&[time], 0).derivative * self.volume)
     }
 
     fn describe(&self) -> String {

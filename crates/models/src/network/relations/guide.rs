@@ -58,6 +58,11 @@ impl Relation for Guide {
         gradients.push(Mat3::from_columns(a, b, c).transpose());
     }
 
+    fn time_rate(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        let velocity = self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.velocity(self.place, time));
+        Vec3::from_array(self.normals.map(|normal| -normal.dot(velocity)))
+    }
+
     fn describe(&self) -> String {
         match self.normals {
             [_, Vec3::ZERO, _] => "a plane",

@@ -30,6 +30,11 @@ pub trait Relation: Send + Sync + Debug {
     /// `∂g/∂x` for each row in turn: the gradient of a component in each row of the matrix.
     fn add_gradients(&self, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
 
+    /// `∂g/∂t` where masses stay.
+    fn time_rate(&self, _positions: &[Vec3], _time: f64) -> Vec3 {
+        Vec3::ZERO
+    }
+
     /// What `g` changes by the second time in each component, where that is told instead of `g` itself [1/s²].
     fn second_rate(&self, _time: f64) -> Option<Vec3> {
         None
@@ -109,6 +114,39 @@ mod tests {
                     assert!(off < 1e-9, "{} by {row} along {axis}: {off}", relation.describe());
                 }
             }
+        }
+    }
+
+    /// What relations change by where masses stay is their derivative by time.
+    #[test]
+    fn time_rates_are_derivatives() {
+        let positions = [
+            Vec3::new(0.1, 0.2, -0.1),
+            Vec3::new(1.1, 0.0, 0.2),
+            Vec3::new(0.2, 0.9, 0.1),
+            Vec3::new(0.3, 0.4, 1.2),
+        ];
+        let (time, step) = (0.4, 1e-5);
+        let moving = Guide { motion: Some(Arc::new(Swinging)), ..Guide::nail(1, Vec3::X) };
+        for relation in all(&positions).into_iter().chain([Box::new(moving) as Box<dyn Relation>]) {
+            let at = |by: f64| relation.value(&positions, time + by);
+            let difference = (at(step) - at(-step)) / (2.0 * step);
+            // as above
+            let off = (difference - relation.time_rate(&positions, time)).length();
+            assert!(off < 1e-9, "{}: {off}", relation.describe());
+        }
+    }
+
+    #[derive(Debug)]
+    struct Swinging;
+
+    impl souple_engine::Motion for Swinging {
+        fn offset(&self, _start: Vec3, time: f64) -> Vec3 {
+            Vec3::X * time.sin()
+        }
+
+        fn velocity(&self, _start: Vec3, time: f64) -> Vec3 {
+            Vec3::X * time.cos()
         }
     }
 

@@ -45,6 +45,14 @@ impl Relation for Surface {
         gradients.push(Mat3::from_columns(by(0), by(1), by(2)));
     }
 
+    fn time_rate(&self, positions: &[Vec3], time: f64) -> Vec3 {
+        let at = self.at(positions, time);
+        let of = |component: usize| {
+            self.zeros.get(component).map_or(0.0, |zero| zero.differentiate(&at, 3).derivative)
+        };
+        Vec3::from_array([0, 1, 2].map(of))
+    }
+
     fn describe(&self) -> String {
         let texts: Vec<&str> = self.zeros.iter().map(Formula::text).collect();
         format!("what is zero in `{}`", texts.join("` and `"))

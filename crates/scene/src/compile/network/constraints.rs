@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use souple_engine::Motion;
+use souple_engine::{Force, Motion};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_models::loads::FormulaVector;
@@ -12,7 +12,7 @@ use souple_models::network::{Constraints, Keeping};
 use super::super::bodies::Placed;
 use super::super::{Draft, memory, motion, start};
 use super::ends;
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Log};
 use crate::spec::network::{ConstraintKind, ConstraintSpec, Guided, Join, Network};
 
 /// Of what a relation changes by when its masses move by their greatest coordinate: what is off by more at the start does not hold.
@@ -39,6 +39,29 @@ pub fn of(draft: &Draft, body: &Placed, network: &Network, index: usize) -> Opti
     let constraints = Constraints::new(name, relations, keeping);
     making.check_start(&constraints, keeping)?;
     Some(constraints)
+}
+
+/// Refuses constraints which are kept exactly and share masses so often that memory does not hold the matrix of their forces.
+pub fn check_size(network: &Network, body: &Placed, constraints: &[&Constraints], log: &Log) {
+    let mut shared = vec![0_u64; body.mesh.points.len()];
+    let exact = constraints.iter().filter(|it| it.binding().is_some());
+    let rows = exact.flat_map(|it| it.relations().iter().flat_map(|relation| relation.rows()));
+    for row in rows {
+        shared[*row as usize - body.rows.start] += 1;
+    }
+    let products = shared.iter().fold(0_u64, |sum, count| sum.saturating_add(count.saturating_mul(*count)));
+    let most = memory::links_that_fit() as u64;
+    let Some(site) = network.constraints.first().map(|spec| &spec.site) else { return };
+    if products > most {
+        let (mass, count) = shared
+            .iter()
+            .enumerate()
+            .fold((0, 0), |worst, (mass, count)| if *count > worst.1 { (mass, *count) } else { worst });
+        let message = format!(
+            "constraints that share masses are {products} pairs, and memory holds no more than {most}; mass {mass} is in {count} of them"
+        );
+        log.add(Code::TooLarge, site, message, "fewer constraints of each mass, or `augmented`");
+    }
 }
 
 /// The ends of all rods, in the order of constraints; `None` where some were refused.
@@ -125,21 +148,34 @@ impl Making<'_> {
         pairs.into_iter().map(|pair| relation(pair).map(|relation| Box::new(relation) as _)).collect()
     }
 
-    /// Masses of the groups, in the order of these.
-    fn masses(&self) -> Vec<u32> {
-        let masses = self.body.mesh.points.len() as u32;
-        if self.spec.of.is_empty() {
-            return (0..masses).collect();
+    /// Masses of the groups, in the order of these; `None` where there are none.
+    fn masses(&self) -> Option<Vec<u32>> {
+        let all = self.body.mesh.points.len() as u32;
+        let masses: Vec<u32> = match &self.spec.of[..] {
+            [] => (0..all).collect(),
+            names => {
+                let groups = names.iter().filter_map(|name| self.network.numbers_of(name));
+                groups.flatten().filter(|mass| *mass < all).collect()
+            }
+        };
+        if masses.is_empty() {
+            return self.refuse(
+                Code::EmptyRegion,
+                "no masses are constrained".to_owned(),
+                "groups that have masses",
+            );
         }
-        let groups = self.spec.of.iter().filter_map(|name| self.network.numbers_of(name));
-        groups.flatten().filter(|mass| *mass < masses).collect()
+        Some(masses)
     }
 
     fn of_each<R: Relation + 'static>(
         &self,
         relation: impl Fn(u32) -> Option<R>,
     ) -> Option<Vec<Box<dyn Relation>>> {
-        self.masses().into_iter().map(|mass| relation(mass).map(|relation| Box::new(relation) as _)).collect()
+        self.masses()?
+            .into_iter()
+            .map(|mass| relation(mass).map(|relation| Box::new(relation) as _))
+            .collect()
     }
 
     fn guided(
@@ -156,7 +192,7 @@ impl Making<'_> {
     }
 
     fn area(&self, normal: Vec3, part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
-        let masses = self.masses();
+        let masses = self.masses()?;
         if masses.len() < 3 {
             let message = format!("a line through {} masses encloses nothing", masses.len());
             return self.refuse(Code::Conflict, message, "at least three masses");
@@ -176,7 +212,7 @@ impl Making<'_> {
     }
 
     fn volume(&self, triangles: &[[u32; 3]], part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
-        let masses = self.masses();
+        let masses = self.masses()?;
         let mut of_rows = Vec::with_capacity(triangles.len());
         for (index, corners) in triangles.iter().enumerate() {
             if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= masses.len()) {
