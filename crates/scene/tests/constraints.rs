@@ -255,7 +255,6 @@ fn wrong_constraints_are_refused() {
         ),
         (kind("area = {}"), "a line through 2 masses encloses nothing"),
         (kind("volume = { triangles = [[0, 1, 2]] }"), "is not met by one other triangle"),
-        ("networks.rope.masses.bob.positions=[]".to_owned(), "no masses"),
         (kind("volume = { triangles = [[0, 1, 1]] }"), "triangles[0] is [0.0, 1.0, 1.0]"),
         (
             kind("volume = { triangles = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]] }"),
@@ -272,6 +271,19 @@ fn wrong_constraints_are_refused() {
         match read(HANGING, &[&setting]) {
             Ok(_) => panic!("{setting} is taken"),
             Err(message) => assert!(message.contains(words), "{setting}: {message}"),
+        }
+    }
+}
+
+/// Points of view are no masses, whatever a constraint would make of them.
+#[test]
+fn constraints_of_views_are_refused() {
+    let view = r#"networks.rope.views.seen={ of = "bob", kind = "scale", factor = 2 }"#;
+    for kind in ["rod = { reach = 3 }", "joint = { reach = 3 }", "rod = { chain = true }", "nail = {}"] {
+        let constraint = format!("networks.rope.constraints=[{{ of = [\"seen\"], {kind} }}]");
+        match read(HANGING, &[view, &constraint]) {
+            Ok(_) => panic!("{kind} is taken"),
+            Err(message) => assert!(message.contains("`seen` is points of view"), "{kind}: {message}"),
         }
     }
 }
@@ -297,10 +309,28 @@ fn augmented_lagrangians_go_with_any_stepper() {
 fn stiff_augmented_lagrangians_are_warned_of() {
     let warned = |stiffness: &str| {
         let rod = format!(
-            r#"networks.rope.constraints=[{{ rod = {{ chain = true }}, augmented = {{ stiffness = {stiffness}, rate = 1 }} }}]"#
+            r#"networks.rope.constraints=[{{ rod = {{ chain = true }}, augmented = {{ stiffness = {stiffness}, damping = 1e-3, rate = 1 }} }}]"#
         );
         !read(HANGING, &[&rod]).unwrap().warnings.is_empty()
     };
-    // 2 c < 4 m/Te²
+    // 2 (c + 2 z/Te) < 4 m/Te², and z c > k m
     assert!(warned("2.1e6") && !warned("1.9e6"));
+}
+
+/// One that nothing damps grows, and is warned of with the damping that holds it.
+#[test]
+fn undamped_augmented_lagrangians_are_warned_of() {
+    let warnings = |damping: &str, more: &[&str]| {
+        let nail = format!(
+            "networks.rope.constraints=[{{ nail = {{}}, augmented = {{ stiffness = 400, damping = {damping}, rate = 1000 }} }}]"
+        );
+        let settings: Vec<&str> = [nail.as_str()].into_iter().chain(more.iter().copied()).collect();
+        read(HANGING, &settings).unwrap().warnings
+    };
+    // k m/c
+    let told = warnings("0", &[]);
+    assert!(told.len() == 1 && told[0].contains("a `damping` above 2.500e0"), "{told:?}");
+    assert_eq!(warnings("2.4", &[]).len(), 1);
+    assert!(warnings("2.6", &[]).is_empty());
+    assert!(warnings("0", &["networks.rope.masses.bob.drag=1"]).is_empty());
 }

@@ -59,6 +59,10 @@ impl Constraints {
         &self.relations
     }
 
+    pub fn keeping(&self) -> Keeping {
+        self.keeping
+    }
+
     /// The multipliers of a relation, in the units of its components: what pushes its masses along its gradients. By the augmented
     /// Lagrangian the whole of what does.
     pub fn multiplier(&self, relation: usize, at: &Configuration) -> Vec3 {

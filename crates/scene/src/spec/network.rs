@@ -502,7 +502,7 @@ impl Network {
                 continue;
             }
             let Some(numbers) = self.numbers_of(name) else { continue };
-            if numbers.end as usize > self.mass_count() {
+            if u64::from(numbers.end) > self.mass_count() {
                 let message = format!("constraints are between masses, and `{name}` is points of view");
                 reader.log().add(Code::Conflict, &constraint.site, message, "groups, parts or ports");
             }

@@ -96,8 +96,10 @@ pub(super) const CASES: &[Case] = &[
         id: "rod_frame_swings",
         what: "place of the far corner of a square of six rods, one of which follows from the others, that swings as a rigid body, after 0.6 s",
         reading: Reading::component("far_corner", 0).after(300),
-        // a compound pendulum of I = 0.72 kg m² from 135°
+        // 1 + 0.6 √2 sin θ of a compound pendulum that starts at rest at 135° from below: I θ'' = −g (Σ m r) sin θ with
+        // I = 0.5 kg (2 + √2²) (0.6 m)² = 0.72 kg m² and Σ m r = 0.5 kg (√2 + 2/√2) 0.6 m, integrated in steps of 10 μs
         reference: 1.514_329_954_392_705,
+        // of second order: at the most the 5.9/s that it has at the end, its phase is off by (ω h)²/24 of ω t, 2e-5, which is seen from the side
         tolerance: Tolerance::Absolute(2e-5),
         mutation: "networks.frame.masses.corners.positions=[[1, 0, 0], [1.6, 0, 0], [1.601, 0.6, 0], [1, 0.6, 0]]",
         source: "physical consistency; redundant relations, specification §6.3, PA-15",
@@ -205,8 +207,10 @@ pub(super) const CASES: &[Case] = &[
         id: "volume_pushes",
         what: "force of its pressure on a pole: the springs of the equator do the work of the poles",
         reading: Reading::component("pole", 1),
-        // sides of √2 a = 1 m at 20 N/m, a = √½ m: dE/da = 4·20 (1 − √½) √2, E = E(a(b)), a² b = a₀² b₀: |da/db| = a/(2 b) = √2, halved between two poles
+        // four sides of √2 a at 20 N/m, √½ m long at rest with a₀ = b₀ = ½ m; poles at b = ¼ m keep a² b = a₀² b₀, so that a = √½ m. By virtual work both poles
+        // do what sides store, 2 F db = dE: dE/da = 4·20 (√2 a − √½) √2 = 80 (√2 − 1), |da/db| = a/(2 b) = √2, F = 40 (2 − √2)
         reference: 23.431_457_505_076_2,
+        // motion has died out at 10/s in three seconds; what is kept to some 1e-12 m of 50 g masses is known to 1e-6 N over the square of a step
         tolerance: Tolerance::Relative(1e-7),
         mutation: "networks.pressed.links[0].law.stiffness=20.1",
         ..KEPT

@@ -9,8 +9,9 @@ use std::ops::Range;
 use souple_engine::Force;
 use souple_engine::steppers::Stability;
 use souple_formal::Formula;
-use souple_math::Vec3;
-use souple_models::network::{Constraints, Crowd, Links};
+use souple_math::{Mat3, Vec3};
+use souple_models::network::relations::Relation;
+use souple_models::network::{Augmented, Constraints, Crowd, Keeping, Links};
 
 use super::super::Draft;
 use super::super::bodies::Placed;
@@ -59,6 +60,66 @@ pub fn warn_of_steps(draft: &mut Draft) {
     let warnings: Vec<String> =
         draft.bodies.iter().filter_map(|body| of_body(draft, body, body.spec.network.as_ref()?)).collect();
     draft.warnings.extend(warnings);
+    let growing: Vec<String> = draft.bodies.iter().flat_map(|body| growing(draft, body)).collect();
+    draft.warnings.extend(growing);
+}
+
+/// Warns of augmented Lagrangians that nothing damps. What a relation is off by, `w = (J W Jᵀ)_cc` of its masses, moves as
+/// `s³ + w z s² + w c s + w k = 0`, which is stable where `z c w > k`.
+fn growing(draft: &Draft, body: &Placed) -> Vec<String> {
+    let system = &draft.systems[body.system];
+    let is_damped =
+        |force: &Box<dyn Force>| force.declaration().velocity_terms && !force.as_any().is::<Constraints>();
+    if system.forces.iter().any(is_damped) {
+        return Vec::new();
+    }
+    let places = body.mesh.points.iter().copied();
+    let positions: Vec<Vec3> = std::iter::repeat_n(Vec3::ZERO, body.rows.start).chain(places).collect();
+    let is_here = |row: &u32| body.rows.contains(&(*row as usize));
+    let constraints = system.forces.iter().filter_map(|force| force.as_any().downcast_ref::<Constraints>());
+    // what is pinned does not move
+    let mut masses = system.mass.diagonal.clone();
+    for pin in system.constraints.iter().filter(|pin| pin.free == Mat3::ZERO) {
+        if let Some(row) = system.kinematics.row_of_block(pin.block) {
+            masses[row as usize] = f64::INFINITY;
+        }
+    }
+    let mut warnings = Vec::new();
+    for constraints in constraints {
+        let Keeping::Augmented(Augmented { stiffness, damping, rate }) = constraints.keeping() else {
+            continue;
+        };
+        if rate == 0.0 || !constraints.relations().iter().all(|it| it.rows().iter().all(is_here)) {
+            continue;
+        }
+        let slopes = constraints.relations().iter().filter_map(|it| slowest(&**it, &masses, &positions));
+        let least = slopes.fold(f64::INFINITY, f64::min);
+        let wanted = rate / (stiffness * least);
+        if least.is_finite() && damping <= wanted {
+            let name = constraints.name();
+            let place = draft.place(&body.spec.site);
+            let cure = if stiffness > 0.0 {
+                format!("a `damping` above {wanted:.3e}")
+            } else {
+                "a `stiffness`, and a `damping`".to_owned()
+            };
+            warnings.push(format!(
+                "{place}: the augmented Lagrangian `{name}` grows where nothing else damps its masses: {cure} would hold it, or a lower `rate`"
+            ));
+        }
+    }
+    warnings
+}
+
+/// The least `J M⁻¹ Jᵀ` of the components of a relation that masses change.
+fn slowest(relation: &dyn Relation, masses: &[f64], positions: &[Vec3]) -> Option<f64> {
+    let mut gradients = Vec::new();
+    relation.add_gradients(positions, 0.0, &mut gradients);
+    let of = |component: usize| -> f64 {
+        let rows = relation.rows().iter().zip(&gradients);
+        rows.map(|(row, gradient)| gradient.row(component).length_sq() / masses[*row as usize]).sum()
+    };
+    [0, 1, 2].map(of).into_iter().filter(|slope| *slope > 0.0).reduce(f64::min)
 }
 
 fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
