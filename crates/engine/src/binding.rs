@@ -29,6 +29,8 @@ const RAISE: f64 = 1e-8;
 /// How far off a relation may be, of what it changes by when its points move by the greatest coordinate of any of them, and of what it
 /// was off by before any force: places are known to `2e-16` of that, and sums over thousands of them to this.
 const TOLERANCE: f64 = 1e-12;
+/// Likewise, of the numbers of which it is the difference, each known to `1e-16` of itself.
+const ROUNDING: f64 = 2e-15;
 /// Each takes a share of the error away that is the square of the angle by which gradients turn within the step.
 const MOST_SOLVES: u32 = 50;
 /// On the diagonal of a component that no force can change: it is not solved for.
@@ -66,6 +68,9 @@ pub trait Binding: Send + Sync {
 
     /// `ġ = J v + ∂g/∂t` of points that move so.
     fn rate(&self, relation: usize, positions: &[Vec3], velocities: &[Vec3], time: f64) -> Vec3;
+
+    /// How large the numbers are of which `g` is the difference.
+    fn magnitude(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3;
 
     /// Whether what it changes by the second time is told, and not what it is to be.
     fn is_told(&self, relation: usize) -> bool;
@@ -460,7 +465,8 @@ impl Bound {
         }
         if kind == known::VALUES {
             let before = before();
-            let near = self.tolerance(structure, index);
+            let near =
+                self.tolerance(structure, index) + binding.magnitude(relation, positions, start) * ROUNDING;
             if (0..3).all(|axis| (before[axis] - remembered[axis]).abs() <= near[axis]) {
                 return Earlier::Value(before);
             }
@@ -530,7 +536,9 @@ impl Bound {
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(binding) = step.system.binding(*force) else { continue };
             let off = self.wanted[index] - binding.value(*relation, &self.places, step.end());
+            let magnitude = binding.magnitude(*relation, &self.places, step.end());
             self.near[index] += Vec3::from_array(off.to_array().map(|off| TOLERANCE * off.abs()));
+            self.near[index] += magnitude * ROUNDING;
         }
     }
 

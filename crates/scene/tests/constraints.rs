@@ -231,6 +231,26 @@ fn a_long_chain_is_held() {
     }
 }
 
+/// Masses about the origin are held as well as others: the numbers that a relation is the difference of are larger than their places.
+#[test]
+fn masses_at_the_origin_are_held() {
+    for kind in [
+        r#"surface = { zero = "(x - 1)^2 + y^2 + z^2 - 1" }"#,
+        r#"line = { place = [1, -0.1, 0.3], direction = [1, -0.1, 0.3] }"#,
+        r#"nail = { place = [0, 0, 0] }"#,
+    ] {
+        let constraint = format!("networks.rope.constraints=[{{ {kind} }}]");
+        let one = "networks.rope.masses.bob.positions=[[0, 0, 0]]";
+        for gravity in ["[0, 0, 0]", "[1e-9, -1, 0]"] {
+            let gravity = format!("world.gravity={gravity}");
+            let mut world = started(HANGING, &[one, &constraint, "networks.rope.pins=[]", &gravity]);
+            for _ in 0..200 {
+                world.step().unwrap_or_else(|error| panic!("{kind}, {gravity}: {error}"));
+            }
+        }
+    }
+}
+
 #[test]
 fn wrong_constraints_are_refused() {
     let kind = |kind: &str| format!("networks.rope.constraints=[{{ {kind} }}]");
@@ -333,4 +353,30 @@ fn undamped_augmented_lagrangians_are_warned_of() {
     assert_eq!(warnings("2.4", &[]).len(), 1);
     assert!(warnings("2.6", &[]).is_empty());
     assert!(warnings("0", &["networks.rope.masses.bob.drag=1"]).is_empty());
+}
+
+/// What is off comes near as a critically damped oscillator does, `(D₀ + (D₀' + D₀/τ) t) e^{−t/τ}`, at any step and either start.
+#[test]
+fn approach_is_that_of_a_critically_damped_oscillator() {
+    let nail = "networks.rope.constraints=[{ nail = { place = [0, 0, 0] }, time = 0.2 }]";
+    for (start, period) in [("trajectory", 1e-3), ("momentum", 1e-3), ("momentum", 0.1)] {
+        let stepper = format!(r#"systems.main.stepper={{ name = "t_simulation", start = "{start}" }}"#);
+        let settings = [
+            nail,
+            &stepper,
+            &format!("world.period={period}"),
+            "networks.rope.pins=[]",
+            "networks.rope.velocity=[0, 2, 0]",
+        ];
+        let mut world = started(HANGING, &settings);
+        let steps = (0.4 / period).round() as usize;
+        for step in 1..=steps {
+            world.step().unwrap();
+            let t = step as f64 * period;
+            let expected = (-1.0 + (2.0 - 5.0) * t) * (-5.0 * t).exp();
+            let found = world.state().systems[0].q[1].y;
+            // each step to 1e-12 of a metre, kept for some τ/h = 200 of them
+            assert!((found - expected).abs() < 1e-9, "{start}, {t}: {found}, {expected}");
+        }
+    }
 }

@@ -140,6 +140,10 @@ impl Binding for Constraints {
         rate(&*self.relations[relation], (positions, velocities, time), &mut Vec::new())
     }
 
+    fn magnitude(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3 {
+        self.relations[relation].magnitude(positions, time)
+    }
+
     fn is_told(&self, relation: usize) -> bool {
         self.relations[relation].second_rate(0.0).is_some()
     }

@@ -51,6 +51,10 @@ impl Relation for Area {
         Vec3::X * (-self.part.differentiate(&[time], 0).derivative * self.area)
     }
 
+    fn magnitude(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        Vec3::X * (self.part.evaluate(&[time]) * self.area).abs()
+    }
+
     fn describe(&self) -> String {
         format!("an area of {} m²", self.area)
     }
@@ -115,6 +119,10 @@ impl Relation for Volume {
 
     fn time_rate(&self, _positions: &[Vec3], time: f64) -> Vec3 {
         Vec3::X * (-self.part.differentiate(&[time], 0).derivative * self.volume)
+    }
+
+    fn magnitude(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        Vec3::X * (self.part.evaluate(&[time]) * self.volume).abs()
     }
 
     fn describe(&self) -> String {

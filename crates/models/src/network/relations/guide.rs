@@ -63,6 +63,11 @@ impl Relation for Guide {
         Vec3::from_array(self.normals.map(|normal| -normal.dot(velocity)))
     }
 
+    fn magnitude(&self, _positions: &[Vec3], time: f64) -> Vec3 {
+        let offset = self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.offset(self.place, time));
+        Vec3::from_array([self.place.length() + offset.length(); 3])
+    }
+
     fn describe(&self) -> String {
         match self.normals {
             [_, Vec3::ZERO, _] => "a plane",

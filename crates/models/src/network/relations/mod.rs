@@ -35,6 +35,11 @@ pub trait Relation: Send + Sync + Debug {
         Vec3::ZERO
     }
 
+    /// How large the numbers are of which `g` is the difference, beside what places of masses are times gradients.
+    fn magnitude(&self, _positions: &[Vec3], _time: f64) -> Vec3 {
+        Vec3::ZERO
+    }
+
     /// What `g` changes by the second time in each component, where that is told instead of `g` itself [1/s²].
     fn second_rate(&self, _time: f64) -> Option<Vec3> {
         None

@@ -34,6 +34,10 @@ impl Relation for Rod {
         gradients.extend([first_row(along), first_row(-along)]);
     }
 
+    fn magnitude(&self, _positions: &[Vec3], _time: f64) -> Vec3 {
+        Vec3::X * self.length
+    }
+
     fn ends(&self) -> Option<[u32; 2]> {
         Some(self.ends)
     }

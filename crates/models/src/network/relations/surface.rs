@@ -53,6 +53,20 @@ impl Relation for Surface {
         Vec3::from_array([0, 1, 2].map(of))
     }
 
+    // what formulas sum is not seen from outside: what they are a metre away, the unit that they are written in, is of its order
+    fn magnitude(&self, positions: &[Vec3], time: f64) -> Vec3 {
+        let at = self.at(positions, time);
+        let beside = |zero: &Formula| -> f64 {
+            let of = |number: usize| {
+                let mut near = at;
+                near[number / 2] += if number.is_multiple_of(2) { 1.0 } else { -1.0 };
+                zero.evaluate(&near).abs()
+            };
+            (0..6).map(of).filter(|it| it.is_finite()).fold(0.0, f64::max)
+        };
+        Vec3::from_array([0, 1, 2].map(|component| self.zeros.get(component).map_or(0.0, beside)))
+    }
+
     fn describe(&self) -> String {
         let texts: Vec<&str> = self.zeros.iter().map(Formula::text).collect();
         format!("what is zero in `{}`", texts.join("` and `"))

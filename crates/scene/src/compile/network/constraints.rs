@@ -69,7 +69,7 @@ pub fn rods(network: &Network, points: &[Vec3], draft: &Draft) -> Option<Vec<[u3
     let mut rods = Vec::new();
     for spec in &network.constraints {
         if let Some(ConstraintKind::Rod(join, _)) = &spec.kind {
-            let of = (join, &spec.of[..], &spec.kind_site);
+            let of = (join, &spec.of[..], &spec.kind_site, "constraint");
             rods.extend(ends::joined(of, network, points, memory::links_that_fit(), draft.log)?);
         }
     }
@@ -138,7 +138,7 @@ impl Making<'_> {
         relation: impl Fn([u32; 2]) -> Option<R>,
     ) -> Option<Vec<Box<dyn Relation>>> {
         let (points, most) = (&self.body.mesh.points, memory::links_that_fit());
-        let of = (join, &self.spec.of[..], &self.spec.kind_site);
+        let of = (join, &self.spec.of[..], &self.spec.kind_site, "constraint");
         let pairs = ends::joined(of, self.network, points, most, self.draft.log)?;
         let masses = points.len() as u32;
         if pairs.iter().flatten().any(|end| *end >= masses) {

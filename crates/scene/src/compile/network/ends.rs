@@ -46,12 +46,12 @@ pub fn of_table(
     most: usize,
     log: &Log,
 ) -> Option<Vec<[u32; 2]>> {
-    joined((table.join.as_ref()?, &table.of, &table.site), network, points, most, log)
+    joined((table.join.as_ref()?, &table.of, &table.site, "link"), network, points, most, log)
 }
 
-/// The masses of groups that are joined in a way, likewise; what is refused is so at the site.
+/// The masses of groups that are joined in a way, likewise; what is refused is so at the site, and called by a word.
 pub fn joined(
-    (join, of, site): (&Join, &[String], &Site),
+    (join, of, site, word): (&Join, &[String], &Site, &str),
     network: &Network,
     points: &[Vec3],
     most: usize,
@@ -82,7 +82,7 @@ pub fn joined(
         Join::All => {
             let count = pair_count(&first, &last);
             if count > most as u64 {
-                let links = format!("{count} links between every pair");
+                let links = format!("{count} {word}s between every pair");
                 too_many(links, "`reach`, which joins neighbours only");
                 return None;
             }
@@ -92,11 +92,11 @@ pub fn joined(
         Join::Reach(reach) => match near(points, first, last, *reach, most) {
             Some(ends) => ends,
             None => {
-                too_many(format!("more than {most} links of at most {reach} m"), "a shorter reach");
+                too_many(format!("more than {most} {word}s of at most {reach} m"), "a shorter reach");
                 return None;
             }
         },
-        Join::Ends(from, to) => listed(site, [from, to], [&first, &last], log)?,
+        Join::Ends(from, to) => listed((site, word), [from, to], [&first, &last], log)?,
     };
     if ends.is_empty() {
         log.add(Code::EmptyRegion, site, "no masses are joined", "a longer reach, or other groups");
@@ -108,7 +108,7 @@ pub fn joined(
 
 /// Links that are written one by one; `None` where one was refused.
 fn listed(
-    site: &Site,
+    (site, word): (&Site, &str),
     [from, to]: [&[u32]; 2],
     [first, last]: [&Range<u32>; 2],
     log: &Log,
@@ -125,8 +125,8 @@ fn listed(
         }
         let pair = [first.start + a, last.start + b];
         if pair[0] == pair[1] {
-            let message = format!("link {index} joins mass {a} to itself");
-            log.add(Code::Conflict, site, message, "two masses for the two ends of a link");
+            let message = format!("{word} {index} joins mass {a} to itself");
+            log.add(Code::Conflict, site, message, format!("two masses for the two ends of a {word}"));
             return None;
         }
         ends.push(pair);
