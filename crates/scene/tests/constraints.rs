@@ -359,7 +359,7 @@ fn undamped_augmented_lagrangians_are_warned_of() {
 #[test]
 fn approach_is_that_of_a_critically_damped_oscillator() {
     let nail = "networks.rope.constraints=[{ nail = { place = [0, 0, 0] }, time = 0.2 }]";
-    for (start, period) in [("trajectory", 1e-3), ("momentum", 1e-3), ("momentum", 0.1)] {
+    for (start, period) in [("trajectory", 1e-3_f64), ("momentum", 1e-3), ("momentum", 0.1)] {
         let stepper = format!(r#"systems.main.stepper={{ name = "t_simulation", start = "{start}" }}"#);
         let settings = [
             nail,
