@@ -253,6 +253,7 @@ impl Making<'_> {
             gradients.clear();
             relation.add_gradients(&positions, 0.0, &mut gradients);
             let told = relation.second_rate(0.0);
+            let magnitude = relation.magnitude(&positions, 0.0);
             let is_finite = value.is_finite() && told.is_none_or(Vec3::is_finite);
             if !(is_finite && gradients.iter().all(|gradient| gradient.is_finite())) {
                 let message = format!("at the start there is no value of {}", relation.describe());
@@ -261,7 +262,7 @@ impl Making<'_> {
             for component in 0..3 {
                 let slope: f64 = gradients.iter().map(|gradient| gradient.row(component).length()).sum();
                 let off = value[component].abs();
-                if told.is_some() || off <= HOLDS * slope * scale {
+                if told.is_some() || off <= HOLDS * (slope * scale + magnitude[component]) {
                     continue;
                 }
                 if slope == 0.0 {
