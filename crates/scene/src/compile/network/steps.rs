@@ -68,9 +68,8 @@ pub fn warn_of_steps(draft: &mut Draft) {
 /// `s³ + w z s² + w c s + w k = 0`, which is stable where `z c w > k`.
 fn growing(draft: &Draft, body: &Placed) -> Vec<String> {
     let system = &draft.systems[body.system];
-    let is_damped =
-        |force: &Box<dyn Force>| force.declaration().velocity_terms && !force.as_any().is::<Constraints>();
-    if system.forces.iter().any(is_damped) {
+    let damps = |force: &dyn Force| force.declaration().velocity_terms && !force.as_any().is::<Constraints>();
+    if system.forces.iter().any(|force| damps(force.as_ref())) {
         return Vec::new();
     }
     let places = body.mesh.points.iter().copied();
