@@ -331,7 +331,7 @@ impl Session {
         let mut hashes = self.recording.hashes.clone();
         add_hash(&mut hashes, &self.world);
         let energy = self.world.energy();
-        let given = self.wavering.given(&energy, &self.bodies);
+        let given = self.wavering.given(&self.world, &energy, &self.bodies);
         Report {
             status,
             title: self.title.clone(),

@@ -69,10 +69,14 @@ impl Wavering {
         said
     }
 
-    /// What there is to say of bodies to which changes of law have given more energy than they store.
-    pub fn given(&self, energy: &EnergyReport, bodies: &[BodyInfo]) -> Vec<String> {
+    /// What there is to say of bodies to which changes of law have given more energy than they store. Where nothing has inertia the next
+    /// equilibrium is found whatever they gave.
+    pub fn given(&self, world: &World, energy: &EnergyReport, bodies: &[BodyInfo]) -> Vec<String> {
         let of = |body: &usize| {
             let info = &bodies[*body];
+            if !world.model().systems[info.system].stepper.has_inertia() {
+                return None;
+            }
             let (_, of_law) = energy.by_force.iter().find(|(name, _)| *name == info.force)?;
             let given = -of_law.dissipated;
             (given > of_law.stored).then(|| {

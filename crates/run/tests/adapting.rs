@@ -35,3 +35,18 @@ fn wavering_elements_are_told() {
     assert_eq!(told(&twice).len(), 1, "{:?}", twice.report.warnings);
     assert!(told(&go(&coarse)).is_empty());
 }
+
+/// A bar that moves is fed by its changes of law: what they gave is told at the end, and not of one that only seeks its equilibria.
+#[test]
+fn energy_given_at_changes_is_told() {
+    let told = |settings: &[&str]| {
+        let coarse = ["bodies.bar.mesh.cells=[12, 2, 2]", "run.duration=\"0.3 s\""];
+        let outcome = go(&[&coarse[..], settings].concat());
+        let of = |warning: &&String| warning.starts_with("changes of law have given body `bar`");
+        outcome.report.warnings.iter().filter(of).count()
+    };
+    let moving =
+        ["systems.main.stepper=\"verlet\"", "world.period=\"5 ms\"", "systems.main.steps_per_period=60"];
+    assert_eq!(told(&[&moving[..], &["bodies.bar.adapt.back=0.8"]].concat()), 1);
+    assert_eq!(told(&[]), 0);
+}
