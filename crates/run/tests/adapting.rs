@@ -25,7 +25,7 @@ fn wavering_elements_are_told() {
     let returning = go(&[&coarse[..], &["bodies.bar.adapt.back=0.8"]].concat());
     let said = told(&returning);
     assert!(
-        said.len() == 1 && said[0].contains("body `bar`") && said[0].contains("`adapt.back`"),
+        said.len() == 1 && said[0].contains("body `bar`") && said[0].contains("`adapt.back = 0`"),
         "{:?}",
         returning.report.warnings
     );
