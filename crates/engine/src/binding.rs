@@ -10,7 +10,7 @@
 //! both ends of a step are those of SHAKE (Ryckaert, Ciccotti & Berendsen 1977): it is symplectic, and of second order.
 //!
 //! Each component is scaled so that the diagonal of `J W Jᵀ` is one. Relations may repeat each other: the matrix is then singular, and its
-//! diagonal is raised by [`RAISE`]. What is left of that is gone after a few of the solves that are made anyway, and of all forces that do the same those with the least
+//! diagonal is raised by `RAISE`. What is left of that is gone after a few of the solves that are made anyway, and of all forces that do the same those with the least
 //! `Σ (J W Jᵀ)_cc λ_c²` are found. Relations that contradict each other are told, not shared out.
 
 use std::sync::Arc;
