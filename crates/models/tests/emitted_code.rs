@@ -303,9 +303,8 @@ fn arguments(code: &str, case: &Case) -> String {
     names.map(|name| format!(", {:?}", case.known[name])).collect()
 }
 
-#[test]
-fn rust_computes_what_was_derived() {
-    let mut cases = cases();
+/// A program that prints the forces and the differential of each case, by the Rust that is written for it.
+fn rust_program(cases: &mut [Case]) -> String {
     let (mut modules, mut calls) = (String::new(), String::new());
     for (index, case) in cases.iter_mut().enumerate() {
         let code = case.derived.emit(ElementCode::Rust).text;
@@ -316,9 +315,16 @@ fn rust_computes_what_was_derived() {
         let _ = writeln!(calls, "    print(case{index}::force_differential(&d, &{u}, &{v}).as_flattened());");
     }
     let print = "fn print(numbers: &[f64]) { println!(\"{numbers:?}\"); }";
+    format!("{modules}\nfn main() {{\n{calls}}}\n{print}\n")
+}
+
+#[test]
+fn rust_computes_what_was_derived() {
+    let mut cases = cases();
+    let text = rust_program(&mut cases);
     let folder = folder("emitted_rust");
     let (source, program) = (folder.join("main.rs"), folder.join("main"));
-    std::fs::write(&source, format!("{modules}\nfn main() {{\n{calls}}}\n{print}\n")).unwrap();
+    std::fs::write(&source, text).unwrap();
     // whoever pastes it does not want to be told of parentheses and unused arguments either
     let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let flags = ["--edition", "2024", "-D", "warnings", "-A", "dead_code", "-o"];

@@ -121,17 +121,7 @@ fn compiled_and_compared(name: &str, program: &str, cases: &[Case], allowed: f64
 #[test]
 fn rust_is_right_where_stretches_coincide() {
     let mut cases = placed();
-    let (mut modules, mut calls) = (String::new(), String::new());
-    for (index, case) in cases.iter_mut().enumerate() {
-        let code = case.derived.emit(ElementCode::Rust).text;
-        let (p, u, v) = (array('p', case), array('u', case), array('v', case));
-        let _ = writeln!(modules, "mod case{index} {{\n{code}}}");
-        let _ = writeln!(calls, "    let d = case{index}::constants(&{p}{});", arguments(&code, case));
-        let _ = writeln!(calls, "    print(case{index}::forces(&d, &{u}).as_flattened());");
-        let _ = writeln!(calls, "    print(case{index}::force_differential(&d, &{u}, &{v}).as_flattened());");
-    }
-    let print = "fn print(numbers: &[f64]) { println!(\"{numbers:?}\"); }";
-    let program = format!("{modules}\nfn main() {{\n{calls}}}\n{print}\n");
+    let program = rust_program(&mut cases);
     // a quotient of differences of 3e-5 loses 1e-16/3e-5, some ten times
     compiled_and_compared("stretches_rust", &program, &cases, 1e-10);
 }
