@@ -15,7 +15,7 @@ const FOLDERS: [(&str, bool); 2] =
     [("crates/models/src/materials/derived", false), ("crates/models/src/solids/derived", true)];
 
 /// Files there that are written by hand.
-const BY_HAND: [&str; 2] = ["mod", "kernel"];
+const BY_HAND: [&str; 3] = ["mod", "kernel", "boxes"];
 
 /// Writes every file anew: an empty one of its name is enough to begin with.
 pub fn make(tree: &Tree) -> Result<(), Failure> {

@@ -1,10 +1,13 @@
 //! Vectors of three, and pairs of numbers, as they lie in long arrays: gathered into lanes as differences, and lanes added
 //! back to both ends.
 
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::__m256i;
+
 use pulp::Simd;
 
 #[cfg(target_arch = "x86_64")]
-use crate::padded::{four_or_eight_wide, four_wide};
+use crate::padded::{columns_of_eight, eight_wide, four_or_eight_wide, four_wide};
 use crate::{Lanes, Vec3};
 
 impl<S: Simd> Vec3<Lanes<S>> {
@@ -18,7 +21,7 @@ impl<S: Simd> Vec3<Lanes<S>> {
         debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
         #[cfg(target_arch = "x86_64")]
         if let Some(v3) = four_wide(&simd) {
-            let three: core::arch::x86_64::__m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
+            let three: __m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
             // SAFETY: promised by the caller for every lane; the mask leaves out what stands behind the vector
             let row = |lane: usize| unsafe {
                 let place = |indices: &[u32]| {
@@ -39,22 +42,32 @@ impl<S: Simd> Vec3<Lanes<S>> {
                 Lanes::new(simd, bytemuck::cast(v3.avx._mm256_permute2f128_pd::<0x31>(even, odd))),
             );
         }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v4) = eight_wide(&simd) {
+            let three: __m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
+            // SAFETY: promised by the caller for every lane; the mask leaves out what stands behind the vector
+            let row = |lane: usize| unsafe {
+                let place = |indices: &[u32]| {
+                    values.as_ptr().add(*indices.get_unchecked(lane) as usize).cast::<f64>()
+                };
+                v4.avx._mm256_sub_pd(
+                    v4.avx._mm256_maskload_pd(place(to), three),
+                    v4.avx._mm256_maskload_pd(place(from), three),
+                )
+            };
+            let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+            let [x, y, z] = columns_of_eight(v4, rows);
+            return Self::new(
+                Lanes::new(simd, bytemuck::cast(x)),
+                Lanes::new(simd, bytemuck::cast(y)),
+                Lanes::new(simd, bytemuck::cast(z)),
+            );
+        }
         // SAFETY: promised by the caller for every lane
         let value = |lane: usize| unsafe {
             let of = |indices: &[u32]| *values.get_unchecked(*indices.get_unchecked(lane) as usize);
             of(to) - of(from)
         };
-        if S::F64_LANES == 8 {
-            // written out so that registers are filled by insertion: through memory, eight narrow stores followed by
-            // a wide load would stall
-            let (a, b, c, d) = (value(0), value(1), value(2), value(3));
-            let (e, f, g, h) = (value(4), value(5), value(6), value(7));
-            return Self::new(
-                Lanes::load(simd, &[a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x]),
-                Lanes::load(simd, &[a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y]),
-                Lanes::load(simd, &[a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z]),
-            );
-        }
         let zero = Lanes::constant(simd, 0.0);
         let mut out = Self::new(zero, zero, zero);
         for lane in 0..S::F64_LANES {
@@ -117,6 +130,28 @@ impl<S: Simd> Vec3<Lanes<S>> {
                 // SAFETY: promised by the caller
                 let sum = unsafe { sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) };
                 let xy = v3.sse2._mm_sub_pd(bytemuck::cast([sum.x, sum.y]), halves[lane]);
+                [sum.x, sum.y] = bytemuck::cast(xy);
+                sum.z -= thirds[lane];
+            }
+            return;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v4) = eight_wide(&simd) {
+            let [x, y, z] = self.to_array().map(|lanes| bytemuck::cast(lanes.values()));
+            let (even, odd) = (v4.avx512f._mm512_unpacklo_pd(x, y), v4.avx512f._mm512_unpackhi_pd(x, y));
+            // (x y) of lanes 0 2 4 6 and of 1 3 5 7, and their z
+            let halves: [[[f64; 2]; 4]; 2] = [bytemuck::cast(even), bytemuck::cast(odd)];
+            let thirds: [f64; 8] = bytemuck::cast(z);
+            for lane in 0..8 {
+                let half = bytemuck::cast(halves[lane % 2][lane / 2]);
+                // SAFETY: promised by the caller
+                let sum = unsafe { sums.get_unchecked_mut(*to.get_unchecked(lane) as usize) };
+                let xy = v4.sse2._mm_add_pd(bytemuck::cast([sum.x, sum.y]), half);
+                [sum.x, sum.y] = bytemuck::cast(xy);
+                sum.z += thirds[lane];
+                // SAFETY: promised by the caller
+                let sum = unsafe { sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) };
+                let xy = v4.sse2._mm_sub_pd(bytemuck::cast([sum.x, sum.y]), half);
                 [sum.x, sum.y] = bytemuck::cast(xy);
                 sum.z -= thirds[lane];
             }

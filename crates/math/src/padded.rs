@@ -1,6 +1,8 @@
 //! Vectors in memory as registers like them: many gathered into lanes at once, and lanes added back.
 
 use std::any::Any;
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{__m256d, __m512d};
 
 use pulp::Simd;
 
@@ -30,6 +32,40 @@ impl From<Padded> for Vec3 {
 #[inline(always)]
 pub(crate) fn four_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V3> {
     (simd as &dyn Any).downcast_ref()
+}
+
+/// The token of 512-bit registers, where they are what `S` computes with.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn eight_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V4> {
+    (simd as &dyn Any).downcast_ref()
+}
+
+/// A transposition of eight rows (x y z ·): all x, all y, all z. A function, since a closure may be left standing by itself: what is not
+/// inlined is not compiled for the processor's instructions.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn columns_of_eight(v4: &pulp::x86::V4, rows: [__m256d; 8]) -> [__m512d; 3] {
+    let f = v4.avx512f;
+    let [a, b, c, d, e, g, h, i] = rows;
+    // two rows each, so that what is picked from two registers below comes in the lanes' order
+    let (a, b) = (both(v4, a, c), both(v4, b, d));
+    let (c, d) = (both(v4, e, h), both(v4, g, i));
+    // (0.x 1.x 0.z 1.z 2.x 3.x 2.z 3.z), and so on
+    let (low, high) = (f._mm512_unpacklo_pd(a, b), f._mm512_unpacklo_pd(c, d));
+    let (low_y, high_y) = (f._mm512_unpackhi_pd(a, b), f._mm512_unpackhi_pd(c, d));
+    [
+        f._mm512_shuffle_f64x2::<0b10_00_10_00>(low, high),
+        f._mm512_shuffle_f64x2::<0b10_00_10_00>(low_y, high_y),
+        f._mm512_shuffle_f64x2::<0b11_01_11_01>(low, high),
+    ]
+}
+
+/// Two halves of a register.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn both(v4: &pulp::x86::V4, low: __m256d, high: __m256d) -> __m512d {
+    v4.avx512f._mm512_insertf64x4::<1>(v4.avx512f._mm512_castpd256_pd512(low), high)
 }
 
 /// The instructions of four lanes, which processors of eight have too.
@@ -76,15 +112,15 @@ impl<S: Simd> Vec3<Lanes<S>> {
                 Lanes::new(simd, bytemuck::cast(v3.avx._mm256_permute2f128_pd::<0x31>(even, odd))),
             );
         }
-        if S::F64_LANES == 8 {
-            // written out so that registers are filled by insertion: through memory, eight narrow stores followed by
-            // a wide load would stall
-            let (a, b, c, d) = (value(0), value(1), value(2), value(3));
-            let (e, f, g, h) = (value(4), value(5), value(6), value(7));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v4) = eight_wide(&simd) {
+            let row = |lane: usize| bytemuck::cast(value(lane));
+            let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
+            let [x, y, z] = columns_of_eight(v4, rows);
             return Self::new(
-                Lanes::load(simd, &[a[0], b[0], c[0], d[0], e[0], f[0], g[0], h[0]]),
-                Lanes::load(simd, &[a[1], b[1], c[1], d[1], e[1], f[1], g[1], h[1]]),
-                Lanes::load(simd, &[a[2], b[2], c[2], d[2], e[2], f[2], g[2], h[2]]),
+                Lanes::new(simd, bytemuck::cast(x)),
+                Lanes::new(simd, bytemuck::cast(y)),
+                Lanes::new(simd, bytemuck::cast(z)),
             );
         }
         let zero = Lanes::constant(simd, 0.0);
@@ -121,6 +157,27 @@ impl<S: Simd> Vec3<Lanes<S>> {
                 // SAFETY: promised by the caller
                 let sum = unsafe { &mut sums.get_unchecked_mut(*indices.get_unchecked(lane) as usize).0 };
                 *sum = bytemuck::cast(v3.avx._mm256_add_pd(bytemuck::cast(*sum), rows[lane]));
+            }
+            return;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v4) = eight_wide(&simd) {
+            let f = v4.avx512f;
+            let [x, y, z] = self.to_array().map(|lanes| bytemuck::cast(lanes.values()));
+            // even and odd lanes of (x y)
+            let (even, odd) = (f._mm512_unpacklo_pd(x, y), f._mm512_unpackhi_pd(x, y));
+            // lanes `lane` and `lane + 2` of (x y z z), from the even or the odd ones
+            let rows = |lane: i64, xy| {
+                let (low, pair) = (lane + 8, lane / 2 * 2);
+                let places = [pair, pair + 1, low, low, pair + 2, pair + 3, low + 2, low + 2];
+                let rows = f._mm512_permutex2var_pd(xy, bytemuck::cast(places), z);
+                [f._mm512_castpd512_pd256(rows), f._mm512_extractf64x4_pd::<1>(rows)]
+            };
+            let ([a, c], [b, d], [e, g], [l, h]) = (rows(0, even), rows(1, odd), rows(4, even), rows(5, odd));
+            for (lane, row) in [a, b, c, d, e, l, g, h].into_iter().enumerate() {
+                // SAFETY: promised by the caller
+                let sum = unsafe { &mut sums.get_unchecked_mut(*indices.get_unchecked(lane) as usize).0 };
+                *sum = bytemuck::cast(v4.avx._mm256_add_pd(bytemuck::cast(*sum), row));
             }
             return;
         }

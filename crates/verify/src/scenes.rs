@@ -59,6 +59,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("heap_collapses", include_str!("../../../scenes/heap_collapses/scene.toml")),
     ("heat", include_str!("../../../scenes/heat/scene.toml")),
     ("held_press", include_str!("../../../scenes/held_press/scene.toml")),
+    ("hung_block", include_str!("../../../scenes/hung_block/scene.toml")),
     ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
     ("joined_halves", include_str!("../../../scenes/joined_halves/scene.toml")),

@@ -8,6 +8,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
+use super::boxes::Corners;
 use super::kernel::{NoKernel, Writer, finished, needed, packing};
 use super::{Text, write};
 use crate::element::{Cut, ElementData, RestMap, WEIGHT, terms};
@@ -28,7 +29,7 @@ pub struct ElementHeading<'a> {
 }
 
 /// Numbers that differ by less are the same: a few roundings of shape gradients, which are of order one.
-const SAME: f64 = 1e-14;
+pub(super) const SAME: f64 = 1e-14;
 
 /// `∂x/∂ξ_axis = Σ c_n x_n`, at one sample or several.
 struct Column {
@@ -70,10 +71,19 @@ struct Fields<'a> {
     addends: Vec<Addend>,
     /// Numbers that columns multiply with, without their signs, from large to small.
     numbers: Vec<f64>,
+    /// Columns from modes of corners, in the place of sums over nodes.
+    corners: Option<Corners>,
 }
 
 impl<'a> Fields<'a> {
     fn new(element: &'a ElementData) -> Self {
+        if let Some(corners) = Corners::of(element) {
+            let of_sample =
+                element.samples.iter().map(|sample| Corners::of_sample(&sample.position).to_vec()).collect();
+            let columns = (0..12).map(|index| Column { axis: index / 4, coefficients: Vec::new() }).collect();
+            let (addends, numbers, corners) = (Vec::new(), Vec::new(), Some(corners));
+            return Self { element, columns, of_sample, addends, numbers, corners };
+        }
         let mut columns: Vec<Column> = Vec::new();
         let mut of_sample = Vec::new();
         for sample in &element.samples {
@@ -93,7 +103,8 @@ impl<'a> Fields<'a> {
             }
             of_sample.push(of_this);
         }
-        let mut fields = Self { element, columns, of_sample, addends: Vec::new(), numbers: Vec::new() };
+        let (addends, numbers, corners) = (Vec::new(), Vec::new(), None);
+        let mut fields = Self { element, columns, of_sample, addends, numbers, corners };
         fields.addends = (0..element.dimension).flat_map(|axis| fields.alike(axis)).collect();
         let mut numbers: Vec<f64> = fields
             .columns
@@ -169,6 +180,9 @@ impl<'a> Fields<'a> {
 
     /// The body of `columns`.
     fn of_nodes(&self) -> String {
+        if let Some(corners) = &self.corners {
+            return corners.columns();
+        }
         let mut out = String::new();
         let mut known: Vec<String> = Vec::new();
         for addend in &self.addends {
@@ -195,6 +209,9 @@ impl<'a> Fields<'a> {
 
     /// The body of `to_nodes`.
     fn to_nodes(&self) -> String {
+        if let Some(corners) = &self.corners {
+            return corners.to_nodes();
+        }
         let mut out = String::new();
         // nodes, by what is added and what is taken away
         let mut of_node: Vec<Vec<(String, bool)>> = vec![Vec::new(); self.element.node_count];
@@ -235,6 +252,8 @@ fn signed_sum(terms: &[(String, bool)]) -> String {
 /// The law with its volume, in grouped constants.
 struct Weighted {
     graph: Graph,
+    measure: Measure,
+    /// `F` or `C`, and its differential.
     deformation: Expr,
     variation: Expr,
     weight: Expr,
@@ -243,19 +262,82 @@ struct Weighted {
     constants: Vec<(Expr, Expr)>,
     /// What each stands for by the numbers of the law alone.
     whole: Vec<Expr>,
-    /// `ω Ψ`, `ω P`, `ω δP`.
+    /// `ω Ψ`, `ω P`, `ω δP`; of a law of `C` with `S` and `δS` in their places.
     outputs: [Expr; 3],
 }
 
+/// What the functions of a law are functions of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Measure {
+    /// `F`, to `P`.
+    Gradient,
+    /// `C = FᵀF`, to the second Piola stress: `P = F S`.
+    Metric,
+}
+
+impl Measure {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Gradient => "F",
+            Self::Metric => "C",
+        }
+    }
+
+    fn stress(self) -> &'static str {
+        match self {
+            Self::Gradient => "P",
+            Self::Metric => "S",
+        }
+    }
+}
+
+/// An energy of `C` alone, with `S = 2 ∂Ψ/∂C` and its differential.
+struct OfMetric {
+    metric: Expr,
+    variation: Expr,
+    outputs: [Expr; 3],
+}
+
+impl OfMetric {
+    /// `None`: `energy` sees `F` otherwise than by the lengths and angles of what it makes of the axes.
+    fn of(graph: &mut Graph, energy: Expr, deformation: Expr) -> Option<Self> {
+        let [metric, variation] = ["C", "dC"].map(|name| graph.symbol(name, Shape::Matrix));
+        let transposed = graph.transpose(deformation);
+        let (product, square) = (graph.multiply(transposed, deformation), graph.dot(deformation, deformation));
+        let trace = graph.trace(metric);
+        let energy = graph.substitute(energy, &HashMap::from([(product, metric), (square, trace)]));
+        if graph.depends(&[energy], &[deformation])[energy.index()] {
+            return None;
+        }
+        let half = graph.gradient(energy, metric);
+        let stress = graph.times_each(2.0, half);
+        let differential = graph.differential(stress, &HashMap::from([(metric, variation)]));
+        // both are symmetric
+        let symmetric = [metric, variation].map(|of| (graph.transpose(of), of));
+        let outputs = [energy, stress, differential].map(|output| {
+            let output = graph.substitute(output, &HashMap::from(symmetric));
+            graph.factored(&[output])[0]
+        });
+        Some(Self { metric, variation, outputs })
+    }
+}
+
 impl Weighted {
-    fn new(law: &EnergyLaw) -> Self {
+    /// `is_shared`: columns of `F` are shared by samples, so that laws of `C` are written as such.
+    fn new(law: &EnergyLaw, is_shared: bool) -> Self {
         let mut graph = law.graph.clone();
         let term = terms(&mut graph, law, Cut::NONE).remove(0);
+        let of_metric = if is_shared { OfMetric::of(&mut graph, term.energy, law.deformation) } else { None };
+        let (measure, deformation, variation, roots) = match of_metric {
+            Some(of) => (Measure::Metric, of.metric, of.variation, of.outputs),
+            None => {
+                let roots = [term.energy, term.stress, term.differential];
+                (Measure::Gradient, law.deformation, law.variation, roots)
+            }
+        };
         let weight = graph.own_symbol(WEIGHT);
         let parameters: Vec<Expr> =
             law.parameters.iter().map(|(name, parameter)| graph.symbol(name, parameter.shape())).collect();
-        let (deformation, variation) = (law.deformation, law.variation);
-        let roots = [term.energy, term.stress, term.differential];
         let grouped = graph.group_constants(&roots, &[deformation, variation]);
         let grouped = graph.without_multiples(grouped);
         let mut known = Substitution::default();
@@ -272,6 +354,7 @@ impl Weighted {
         let outputs = [shared[0], shared[1], shared[2]];
         Self {
             graph,
+            measure,
             deformation,
             variation,
             weight,
@@ -309,27 +392,32 @@ impl Weighted {
         Ok(finished(&body, &end(&results), matrices))
     }
 
-    /// `ω Ψ` and its derivatives from `F`, `dF` and the constants.
+    /// `ω Ψ` and its derivatives from `F` or `C`, their differentials and the constants.
     fn function(&self, output: usize) -> Result<String, NoKernel> {
-        let mut inputs = vec![(self.deformation, "F".to_owned())];
+        let name = self.measure.name();
+        let rate = format!("d{name}");
+        let mut inputs = vec![(self.deformation, name.to_owned())];
         inputs
             .extend((0..).zip(&self.constants).map(|(index, (symbol, _))| (*symbol, format!("D.d{index}"))));
-        let varied = [(self.variation, "dF".to_owned())];
-        let body = |matrices: &[&str]| {
-            self.body([&inputs, &varied], &[self.outputs[output]], matrices, |results| {
-                format!("        {}\n", results[0])
+        let varied = [(self.variation, rate.clone())];
+        let body = |outputs: &[Expr], matrices: &[&str]| {
+            self.body([&inputs, &varied], outputs, matrices, |results| match results {
+                [one] => format!("        {one}\n"),
+                several => format!("        ({})\n", several.join(", ")),
             })
         };
-        match (output, self.is_linear()) {
-            (2, true) => body(&["dF"]),
-            (2, false) => body(&["F", "dF"]),
-            _ => body(&["F"]),
+        match (output, self.measure) {
+            (2, Measure::Metric) => body(&self.outputs[1..], &[name, &rate]),
+            (2, _) if self.is_linear() => body(&self.outputs[2..], &[&rate]),
+            (2, _) => body(&self.outputs[2..], &[name, &rate]),
+            _ => body(&self.outputs[output..=output], &[name]),
         }
     }
 
     /// Whether the differential is the same everywhere.
     fn is_linear(&self) -> bool {
-        !self.graph.depends(&[self.outputs[2]], &[self.deformation])[self.outputs[2].index()]
+        self.measure == Measure::Gradient
+            && !self.graph.depends(&[self.outputs[2]], &[self.deformation])[self.outputs[2].index()]
     }
 
     /// The constants from the numbers of the law and the volume.
@@ -383,7 +471,8 @@ pub fn element_kernel(
     }
     super::kernel::check_names(law)?;
     let names: Vec<&str> = law.parameters.iter().map(|(name, _)| name.as_str()).collect();
-    let (fields, weighted) = (Fields::new(element), Weighted::new(law));
+    let fields = Fields::new(element);
+    let weighted = Weighted::new(law, fields.corners.is_some());
     let functions = [0, 1, 2].map(|output| weighted.function(output));
     let [energy, stress, differential] = functions;
     let bodies = [energy?, stress?, differential?, weighted.grouping(&names)?];
@@ -427,9 +516,18 @@ impl File<'_> {
             of_map + moduli
         ));
         let is_linear = weighted.is_linear();
-        let of_differential = if is_linear { "" } else { ", F: &Mat3<R>" };
+        let (measure, stress_name) = (weighted.measure.name(), weighted.measure.stress());
+        let of_place = if is_linear { String::new() } else { format!(", {measure}: &Mat3<R>") };
+        let made = match weighted.measure {
+            Measure::Gradient => "Mat3<R>",
+            Measure::Metric => "(Mat3<R>, Mat3<R>)",
+        };
         let of_differential =
-            format!("differential_of<R: Real>(D: &Constants<R>{of_differential}, dF: &Mat3<R>) -> Mat3<R>");
+            format!("differential_of<R: Real>(D: &Constants<R>{of_place}, d{measure}: &Mat3<R>) -> {made}");
+        let of_differential_is = match weighted.measure {
+            Measure::Gradient => "`ω δP`.",
+            Measure::Metric => "`ω S` and `ω δS`.",
+        };
         let every = [energy, stress, differential, grouping];
         let uses = |word: &str| every.iter().any(|body| body.contains(word));
         line("use souple_math::{Mat3, Real, Vec3};\n");
@@ -438,6 +536,16 @@ impl File<'_> {
             line("use crate::materials::invariants::cofactor_differential;");
         }
         let sums = fields.of_nodes().contains("weighted(") || fields.to_nodes().contains("weighted(");
+        if fields.corners.is_some() {
+            let of_metric = match weighted.measure {
+                Measure::Gradient => "",
+                Measure::Metric => "add_across, add_scaled, ",
+            };
+            let metrics = if of_metric.is_empty() { "" } else { ", metric, metric_differential" };
+            line(&format!(
+                "use crate::solids::derived::boxes::{{{of_metric}along, bilinear{metrics}, modes}};"
+            ));
+        }
         line(&format!(
             "use crate::solids::derived::{{DerivedElement, RestSamples{}}};\n",
             if sums { ", weighted" } else { "" }
@@ -461,19 +569,35 @@ impl File<'_> {
             let numbers: Vec<String> = fields.numbers.iter().map(|number| format!("{number:?}")).collect();
             line(&format!("const C: [f64; {}] = [{}];\n", numbers.len(), numbers.join(", ")));
         }
+        if let Some(corners) = &fields.corners {
+            line("/// Weights of what is constant, linear and bilinear in the other coordinates, at the samples.");
+            let weights: Vec<String> = corners.weights().iter().map(|weight| format!("{weight:?}")).collect();
+            line(&format!("const MODES: [f64; 3] = [{}];\n", weights.join(", ")));
+        }
         for (doc, head, body) in [
-            ("`ω Ψ`.", "energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R", energy),
-            ("`ω P`.", "stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R>", stress),
-            ("`ω δP`.", &*of_differential, differential),
+            ("`ω Ψ`.", &*format!("energy_of<R: Real>(D: &Constants<R>, {measure}: &Mat3<R>) -> R"), energy),
+            (
+                &*format!("`ω {stress_name}`."),
+                &*format!("stress_of<R: Real>(D: &Constants<R>, {measure}: &Mat3<R>) -> Mat3<R>"),
+                stress,
+            ),
+            (of_differential_is, &*of_differential, differential),
         ] {
             line(&format!("/// {doc}\n#[inline(always)]\nfn {head} {{\n{body}}}\n"));
         }
+        let (of_what, of_stress, weights) = if fields.corners.is_some() {
+            let of_what = "`∂x/∂X` at the samples, by axes, from modes of the corners: `dds` is the sum along ζ of differences along ξ and η, `m` and `p` are";
+            (format!("{of_what}\n/// corners at -1 and at 1."), "`ω P`", ", K: &[[R; 3]; 3]")
+        } else {
+            let of_what = "`∂x/∂ξ` at the samples, by axes: columns that several of them share.";
+            (of_what.to_owned(), "`ω P X_ξ⁻ᵀ`", "")
+        };
         line(&format!(
-            "/// `∂x/∂ξ` at the samples, by axes: columns that several of them share.\n#[inline(always)]\nfn columns<R: Real>(x: &[Vec3<R>; {nodes}]) -> [Vec3<R>; {columns}] {{\n{}}}\n",
+            "/// {of_what}\n#[inline(always)]\nfn columns<R: Real>(x: &[Vec3<R>; {nodes}]{weights}) -> [Vec3<R>; {columns}] {{\n{}}}\n",
             fields.of_nodes()
         ));
         line(&format!(
-            "/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].\n#[inline(always)]\nfn to_nodes<R: Real>(s: &[Vec3<R>; {columns}]) -> [Vec3<R>; {nodes}] {{\n{}}}\n",
+            "/// Forces on nodes from {of_stress} by columns, the transpose of [`columns`].\n#[inline(always)]\nfn to_nodes<R: Real>(s: &[Vec3<R>; {columns}]{weights}) -> [Vec3<R>; {nodes}] {{\n{}}}\n",
             fields.to_nodes()
         ));
         self.gradients(&mut line);
@@ -493,6 +617,9 @@ impl File<'_> {
     /// Functions between reference and rest shape.
     fn gradients(&self, line: &mut impl FnMut(&str)) {
         let dimension = self.element.dimension;
+        if self.fields.corners.is_some() {
+            return;
+        }
         if matches!(self.element.map, RestMap::Box { .. }) {
             line("/// Columns times what the map of the box makes of their axes.\n#[inline(always)]");
             let columns = self.fields.columns.len();
@@ -575,14 +702,25 @@ impl File<'_> {
         let is_even = element.samples.iter().all(|sample| (sample.weight - first_weight).abs() < SAME);
         if is_box {
             line("let (X, volume) = at.sample(0);".to_owned());
+            if fields.corners.is_some() {
+                line("let K = along(&X, MODES);".to_owned());
+            }
             for (name, of) in column_fields {
-                line(format!("let {name} = scaled(columns({of}), &X);"));
+                line(match fields.corners {
+                    Some(_) => format!("let {name} = columns({of}, &K);"),
+                    None => format!("let {name} = scaled(columns({of}), &X);"),
+                });
             }
             if is_even {
                 line("let D = Constants::of(p, volume);".to_owned());
             }
         } else {
             column_fields.iter().for_each(|(name, of)| line(format!("let {name} = columns({of});")));
+        }
+        if weighted.measure == Measure::Metric {
+            self.of_metric(output).into_iter().for_each(line);
+            out.push_str("    }\n");
+            return out;
         }
         let mut energies = Vec::new();
         // what samples have given to each column
@@ -637,10 +775,88 @@ impl File<'_> {
         let list = sums.join(", ");
         line(match (output, is_box) {
             (0, _) => energies.join(" + "),
+            (_, true) if fields.corners.is_some() => format!("to_nodes(&[{list}], &K)"),
             (_, true) => format!("to_nodes(&scaled([{list}], &X))"),
             (_, false) => format!("to_nodes(&[{list}])"),
         });
         out.push_str("    }\n");
         out
+    }
+
+    /// Samples of a law of `C`, one after the other: products of columns with themselves, and what diagonals of `S` make of a column, are
+    /// shared by the samples that have it.
+    fn of_metric(&self, output: usize) -> Vec<String> {
+        let fields = &self.fields;
+        let columns = 0..fields.columns.len();
+        let mut lines = Vec::new();
+        let products = |other: &str| {
+            let products: Vec<String> =
+                columns.clone().map(|column| format!("c[{column}].dot({other}[{column}])")).collect();
+            products.join(", ")
+        };
+        lines.push(format!("let g = [{}];", products("c")));
+        if output == 2 {
+            lines.push(format!("let dg = [{}];", products("dc")));
+        }
+        if output > 0 {
+            lines.push("let zero = c[0] * volume.zero();".to_owned());
+        }
+        let mut sums = vec!["zero".to_owned(); fields.columns.len()];
+        // samples of each column, with its axis
+        let mut had: Vec<Vec<usize>> = vec![Vec::new(); fields.columns.len()];
+        for (sample, of_sample) in fields.of_sample.iter().enumerate() {
+            let three = |name: &str| {
+                let entries: Vec<String> =
+                    of_sample.iter().map(|column| format!("{name}[{column}]")).collect();
+                format!("[{}]", entries.join(", "))
+            };
+            let metric = format!("metric({}, {})", three("c"), three("g"));
+            if output == 0 {
+                lines.push(format!("let w{sample} = energy_of(&D, &{metric});"));
+                continue;
+            }
+            let before: Vec<String> = of_sample.iter().map(|column| sums[*column].clone()).collect();
+            let after: Vec<String> = of_sample.iter().map(|column| format!("s{column}")).collect();
+            let (before, list) = (format!("[{}]", before.join(", ")), after.join(", "));
+            if output == 1 {
+                lines.push(format!("let S{sample} = stress_of(&D, &{metric});"));
+                lines.push(format!("let [{list}] = add_across({before}, {}, &S{sample});", three("c")));
+            } else {
+                lines.push(format!("let (F, dF) = ({}, {});", three("c"), three("dc")));
+                lines.push(format!("let C = metric(F, {});", three("g")));
+                lines.push(format!("let dC = metric_differential(F, dF, {});", three("dg")));
+                lines.push(format!("let (S{sample}, dS{sample}) = differential_of(&D, &C, &dC);"));
+                let first = format!("add_across({before}, F, &dS{sample})");
+                lines.push(format!("let [{list}] = add_across({first}, dF, &S{sample});"));
+            }
+            for (axis, (column, name)) in of_sample.iter().zip(after).enumerate() {
+                sums[*column] = name.clone();
+                had[*column].push(sample);
+                if fields.of_sample[sample + 1..].iter().any(|later| later.contains(column)) {
+                    continue;
+                }
+                let entries = |letter: &str| {
+                    let entry = |sample: &usize| {
+                        format!("{letter}{sample}.columns[{axis}].{}", ["x", "y", "z"][axis])
+                    };
+                    had[*column].iter().map(entry).collect::<Vec<_>>().join(" + ")
+                };
+                let own = if output == 1 {
+                    format!("add_scaled({name}, c[{column}], {})", entries("S"))
+                } else {
+                    let of_rate = format!("add_scaled({name}, dc[{column}], {})", entries("S"));
+                    format!("add_scaled({of_rate}, c[{column}], {})", entries("dS"))
+                };
+                lines.push(format!("let {name} = {own};"));
+            }
+        }
+        lines.push(if output == 0 {
+            let energies: Vec<String> =
+                (0..fields.of_sample.len()).map(|sample| format!("w{sample}")).collect();
+            energies.join(" + ")
+        } else {
+            format!("to_nodes(&[{}], &K)", sums.join(", "))
+        });
+        lines
     }
 }

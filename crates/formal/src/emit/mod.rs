@@ -3,6 +3,7 @@
 //! Parts that are used more than once, or grow too long for a line, get a line of their own before they are used. All
 //! styles share one walk over the graph and differ in how they write an operation.
 
+mod boxes;
 mod element;
 mod fused;
 mod kernel;

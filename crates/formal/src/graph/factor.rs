@@ -23,6 +23,15 @@ impl Graph {
         if cost(self, &factored) < cost(self, roots) { factored } else { roots.to_vec() }
     }
 
+    /// `number · expr` with the number in every addend, where those have numbers of their own.
+    pub(crate) fn times_each(&mut self, number: f64, expr: Expr) -> Expr {
+        let number = self.number(number);
+        let addends = self.scaled_addends(expr, number);
+        let addends: Vec<Expr> =
+            addends.into_iter().map(|(scale, addend)| self.scale(scale, addend)).collect();
+        self.sum(&addends)
+    }
+
     fn factored_sum(&mut self, sum: Expr) -> Expr {
         let one = self.number(1.0);
         // `s L R` by `L`, in the order in which the factors come

@@ -1,5 +1,7 @@
 //! A register's worth of elements: their nodes gathered, their sums scattered, their numbers loaded.
 
+use std::mem::MaybeUninit;
+
 use pulp::Simd;
 use souple_math::{Lanes, Mat3, Padded, Vec3};
 
@@ -25,14 +27,20 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
         &self.chunk.connectivity[at..at + S::F64_LANES]
     }
 
-    /// Vectors of the elements' nodes, side by side.
+    /// Vectors of the elements' nodes, side by side; zero where an element has none.
     #[inline(always)]
     pub fn gather(&self, values: &[Padded]) -> [Vec3<Lanes<S>>; N] {
-        let mut out = self.zeros();
-        for a in 0..self.nodes {
-            out[a] = self.gather_node(values, a);
+        // not zeros first: these would be written to memory for nothing
+        let mut out = [const { MaybeUninit::<Vec3<Lanes<S>>>::uninit() }; N];
+        for a in 0..self.nodes.min(N) {
+            out[a].write(self.gather_node(values, a));
         }
-        out
+        let zero = Lanes::constant(self.simd, 0.0);
+        for a in self.nodes..N {
+            out[a].write(Vec3::new(zero, zero, zero));
+        }
+        // SAFETY: each of the N is written, and an array of what may be uninitialised is laid out as one of what is not
+        unsafe { std::mem::transmute_copy(&out) }
     }
 
     /// Vectors of the elements' node `a`.

@@ -98,6 +98,27 @@ const PULLED: Adapting = Adapting {
     saving: Some("length_14"),
 };
 
+/// The gravity test.
+const HUNG: Adapting = Adapting {
+    name: "hung",
+    scene: "hung_block",
+    // the swing when the weight comes has gone by then
+    periods: 1000,
+    probe: "bottom",
+    settings: &[],
+    body: "block",
+    of_laws: &["second_law"],
+    second: "{ name = \"st_venant_kirchhoff\", youngs_modulus = 6e4, poissons_ratio = 0.3, density = 1000 }",
+    variants: &[
+        ("all_first", "edge_length = 1e9"),
+        ("length_20", "edge_length = 0.2"),
+        ("length_15", "edge_length = 0.15"),
+        ("length_10", "edge_length = 0.1"),
+        ("length_6", "edge_length = 0.06"),
+    ],
+    saving: Some("length_20"),
+};
+
 const PULLED_BY_EIGHT: Adapting = Adapting {
     name: "pulled_by_eight",
     settings: &["bodies.pad.quadrature=\"default\""],
@@ -113,7 +134,7 @@ const PULLED_BY_EIGHT: Adapting = Adapting {
 
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
-    for body in [BENT, PRESSED, PULLED, PULLED_BY_EIGHT] {
+    for body in [BENT, HUNG, PRESSED, PULLED, PULLED_BY_EIGHT] {
         figures.extend(body.figures(name, effort)?);
     }
     Ok(figures)

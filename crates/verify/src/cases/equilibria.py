@@ -2,7 +2,7 @@
 
 Hexahedra of eight nodes and eight Gauss points, or 27, under Hooke's, St. Venant-Kirchhoff's and Ogden's laws, and triangles in plane
 stress under the first two, by Newton's method; numpy and scipy alone. `python3 equilibria.py` takes a minute and prints the tip of the bent bar (`adaptive_bar`), of the bent strip (`adaptive_strip`), the forces on
-the pressed and the pulled pad (`pressed_pad`, `pulled_pad`), the waist of the stretched cube and the free face of the hanging one.
+the pressed and the pulled pad (`pressed_pad`, `pulled_pad`), the bottom of the hung block (`hung_block`), the waist of the stretched cube and the free face of the hanging one.
 """
 
 import itertools
@@ -146,6 +146,22 @@ def pad():
     print(f"force on the pull, St. Venant-Kirchhoff: {internal[pressed].sum():.9f} N")
 
 
+def hung():
+    points, hexes = grid([1, 0.6, 1], [10, 6, 10])
+    mu, lam = lame(6e4, 0.3)
+    x, y, z = points.T
+    plate = (abs(x - 0.5) < 0.1501) & (abs(z - 0.5) < 0.1501) & (y > 0.59)
+    held, bottom = np.flatnonzero(np.repeat(plate, 3)), np.flatnonzero(y < 1e-9)
+    mass = np.bincount(hexes.ravel(), minlength=len(points)) * 1000 * 0.6 / len(hexes) / 8
+    for name, law in [("Hooke", hooke), ("St. Venant-Kirchhoff", venant)]:
+        u = np.zeros(3 * len(points))
+        for part in [1.0] if law is hooke else np.linspace(0.125, 1, 8):
+            load = np.zeros(points.shape)
+            load[:, 1] = -9.81 * part * mass
+            u, _ = equilibrium(points, hexes, lambda F: law(F, mu, lam), load.ravel(), held, 0.0, u, samples=3)
+        print(f"bottom of the hung block, {name}: {u.reshape(-1, 3)[bottom, 1].mean():.12f} m")
+
+
 def cube():
     points, hexes = grid([1, 1, 1], [10, 10, 10])
     mu, lam = lame(1e5, 0.3)
@@ -261,4 +277,5 @@ def strip():
 bar()
 strip()
 pad()
+hung()
 cube()

@@ -5,6 +5,7 @@
 //! volume, by which moduli are multiplied in registers, once per sample. A box along the axes has one map for all its samples: four
 //! numbers are read in the place of eighty. Blocks of matrices are those of the samples.
 
+mod boxes;
 mod kernel;
 
 pub mod linear_hex8;

@@ -12,7 +12,8 @@ use souple_math::{Mat3, Real, Vec3};
 
 use crate::materials::Parameters;
 use crate::materials::invariants::cofactor_differential;
-use crate::solids::derived::{DerivedElement, RestSamples, weighted};
+use crate::solids::derived::boxes::{along, bilinear, modes};
+use crate::solids::derived::{DerivedElement, RestSamples};
 
 /// See the module.
 #[derive(Clone, Copy, Debug)]
@@ -60,8 +61,8 @@ impl<R: Real> Constants<R> {
     }
 }
 
-/// Of `∂N/∂ξ` at the samples, without signs.
-const C: [f64; 3] = [0.3110042339640731, 0.08333333333333334, 0.02232909936926023];
+/// Weights of what is constant, linear and bilinear in the other coordinates, at the samples.
+const MODES: [f64; 3] = [0.125, 0.07216878364870322, 0.041666666666666664];
 
 /// `ω Ψ`.
 #[inline(always)]
@@ -135,81 +136,77 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     M2.scaled(s14) + M4
 }
 
-/// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
+/// `∂x/∂X` at the samples, by axes, from modes of the corners: `dds` is the sum along ζ of differences along ξ and η, `m` and `p` are
+/// corners at -1 and at 1.
 #[inline(always)]
-fn columns<R: Real>(x: &[Vec3<R>; 8]) -> [Vec3<R>; 12] {
-    let e1m0 = x[1] - x[0];
-    let e2m3 = x[2] - x[3];
-    let e5m4 = x[5] - x[4];
-    let e6m7 = x[6] - x[7];
-    let e3m0 = x[3] - x[0];
-    let e2m1 = x[2] - x[1];
-    let e7m4 = x[7] - x[4];
-    let e6m5 = x[6] - x[5];
-    let e4m0 = x[4] - x[0];
-    let e5m1 = x[5] - x[1];
-    let e6m2 = x[6] - x[2];
-    let e7m3 = x[7] - x[3];
-    [
-        weighted([(e1m0, C[0]), (e2m3 + e5m4, C[1]), (e6m7, C[2])]),
-        weighted([(e3m0, C[0]), (e2m1 + e7m4, C[1]), (e6m5, C[2])]),
-        weighted([(e4m0, C[0]), (e5m1 + e7m3, C[1]), (e6m2, C[2])]),
-        weighted([(e2m1, C[0]), (e3m0 + e6m5, C[1]), (e7m4, C[2])]),
-        weighted([(e5m1, C[0]), (e4m0 + e6m2, C[1]), (e7m3, C[2])]),
-        weighted([(e2m3, C[0]), (e1m0 + e6m7, C[1]), (e5m4, C[2])]),
-        weighted([(e7m3, C[0]), (e4m0 + e6m2, C[1]), (e5m1, C[2])]),
-        weighted([(e6m2, C[0]), (e5m1 + e7m3, C[1]), (e4m0, C[2])]),
-        weighted([(e5m4, C[0]), (e1m0 + e6m7, C[1]), (e2m3, C[2])]),
-        weighted([(e7m4, C[0]), (e3m0 + e6m5, C[1]), (e2m1, C[2])]),
-        weighted([(e6m5, C[0]), (e2m1 + e7m4, C[1]), (e3m0, C[2])]),
-        weighted([(e6m7, C[0]), (e2m3 + e5m4, C[1]), (e1m0, C[2])]),
-    ]
+fn columns<R: Real>(x: &[Vec3<R>; 8], K: &[[R; 3]; 3]) -> [Vec3<R>; 12] {
+    let dmm = x[1] - x[0];
+    let smm = x[1] + x[0];
+    let dpm = x[2] - x[3];
+    let spm = x[2] + x[3];
+    let dmp = x[5] - x[4];
+    let smp = x[5] + x[4];
+    let dpp = x[6] - x[7];
+    let spp = x[6] + x[7];
+    let ddm = dpm - dmm;
+    let dsm = dpm + dmm;
+    let sdm = spm - smm;
+    let ssm = spm + smm;
+    let ddp = dpp - dmp;
+    let dsp = dpp + dmp;
+    let sdp = spp - smp;
+    let ssp = spp + smp;
+    let ddd = ddp - ddm;
+    let dds = ddp + ddm;
+    let sdd = sdp - sdm;
+    let sds = sdp + sdm;
+    let dsd = dsp - dsm;
+    let dss = dsp + dsm;
+    let ssd = ssp - ssm;
+    let xi = bilinear([dss, dds, dsd, ddd], &K[0]);
+    let eta = bilinear([sds, dds, sdd, ddd], &K[1]);
+    let zeta = bilinear([ssd, dsd, sdd, ddd], &K[2]);
+    [xi[0], xi[1], xi[2], xi[3], eta[0], eta[1], eta[2], eta[3], zeta[0], zeta[1], zeta[2], zeta[3]]
 }
 
-/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P` by columns, the transpose of [`columns`].
 #[inline(always)]
-fn to_nodes<R: Real>(s: &[Vec3<R>; 12]) -> [Vec3<R>; 8] {
-    let t1m0_xi = weighted([(s[0], C[0]), (s[5] + s[8], C[1]), (s[11], C[2])]);
-    let t2m3_xi = weighted([(s[5], C[0]), (s[0] + s[11], C[1]), (s[8], C[2])]);
-    let t5m4_xi = weighted([(s[8], C[0]), (s[0] + s[11], C[1]), (s[5], C[2])]);
-    let t6m7_xi = weighted([(s[11], C[0]), (s[5] + s[8], C[1]), (s[0], C[2])]);
-    let t3m0_eta = weighted([(s[1], C[0]), (s[3] + s[9], C[1]), (s[10], C[2])]);
-    let t2m1_eta = weighted([(s[3], C[0]), (s[1] + s[10], C[1]), (s[9], C[2])]);
-    let t7m4_eta = weighted([(s[9], C[0]), (s[1] + s[10], C[1]), (s[3], C[2])]);
-    let t6m5_eta = weighted([(s[10], C[0]), (s[3] + s[9], C[1]), (s[1], C[2])]);
-    let t4m0_zeta = weighted([(s[2], C[0]), (s[4] + s[6], C[1]), (s[7], C[2])]);
-    let t5m1_zeta = weighted([(s[4], C[0]), (s[2] + s[7], C[1]), (s[6], C[2])]);
-    let t6m2_zeta = weighted([(s[7], C[0]), (s[4] + s[6], C[1]), (s[2], C[2])]);
-    let t7m3_zeta = weighted([(s[6], C[0]), (s[2] + s[7], C[1]), (s[4], C[2])]);
-    [
-        t1m0_xi + t3m0_eta + t4m0_zeta,
-        t2m1_eta + t5m1_zeta - t1m0_xi,
-        t6m2_zeta - t2m3_xi - t2m1_eta,
-        t2m3_xi + t7m3_zeta - t3m0_eta,
-        t5m4_xi + t7m4_eta - t4m0_zeta,
-        t6m5_eta - t5m4_xi - t5m1_zeta,
-        -(t6m7_xi + t6m5_eta + t6m2_zeta),
-        t6m7_xi - t7m4_eta - t7m3_zeta,
-    ]
-}
-
-/// Columns times what the map of the box makes of their axes.
-#[inline(always)]
-fn scaled<R: Real>(c: [Vec3<R>; 12], X: &Mat3<R>) -> [Vec3<R>; 12] {
-    [
-        c[0] * X.columns[0].x,
-        c[1] * X.columns[1].y,
-        c[2] * X.columns[2].z,
-        c[3] * X.columns[1].y,
-        c[4] * X.columns[2].z,
-        c[5] * X.columns[0].x,
-        c[6] * X.columns[2].z,
-        c[7] * X.columns[2].z,
-        c[8] * X.columns[0].x,
-        c[9] * X.columns[1].y,
-        c[10] * X.columns[1].y,
-        c[11] * X.columns[0].x,
-    ]
+fn to_nodes<R: Real>(s: &[Vec3<R>; 12], K: &[[R; 3]; 3]) -> [Vec3<R>; 8] {
+    let xi = modes([s[0], s[1], s[2], s[3]], &K[0]);
+    let eta = modes([s[4], s[5], s[6], s[7]], &K[1]);
+    let zeta = modes([s[8], s[9], s[10], s[11]], &K[2]);
+    let dss = xi[0];
+    let dds = xi[1] + eta[1];
+    let dsd = xi[2] + zeta[1];
+    let ddd = xi[3] + eta[3] + zeta[3];
+    let sds = eta[0];
+    let sdd = eta[2] + zeta[2];
+    let ssd = zeta[0];
+    let ddm = dds - ddd;
+    let ddp = dds + ddd;
+    let sdm = sds - sdd;
+    let sdp = sds + sdd;
+    let dsm = dss - dsd;
+    let dsp = dss + dsd;
+    let ssm = -ssd;
+    let ssp = ssd;
+    let dmm = dsm - ddm;
+    let dpm = dsm + ddm;
+    let smm = ssm - sdm;
+    let spm = ssm + sdm;
+    let dmp = dsp - ddp;
+    let dpp = dsp + ddp;
+    let smp = ssp - sdp;
+    let spp = ssp + sdp;
+    let mmm = smm - dmm;
+    let pmm = smm + dmm;
+    let mpm = spm - dpm;
+    let ppm = spm + dpm;
+    let mmp = smp - dmp;
+    let pmp = smp + dmp;
+    let mpp = spp - dpp;
+    let ppp = spp + dpp;
+    [mmm, pmm, ppm, mpm, mmp, pmp, ppp, mpp]
 }
 
 impl DerivedElement<8> for StableNeoHookeanHex8Box {
@@ -219,23 +216,24 @@ impl DerivedElement<8> for StableNeoHookeanHex8Box {
     #[inline(always)]
     fn energy<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 8], at: &impl RestSamples<R>) -> R {
         let (X, volume) = at.sample(0);
-        let c = scaled(columns(x), &X);
+        let K = along(&X, MODES);
+        let c = columns(x, &K);
         let D = Constants::of(p, volume);
-        let F = Mat3::from_columns(c[0], c[1], c[2]);
+        let F = Mat3::from_columns(c[0], c[4], c[8]);
         let w0 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[0], c[3], c[4]);
+        let F = Mat3::from_columns(c[0], c[5], c[9]);
         let w1 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[5], c[1], c[6]);
+        let F = Mat3::from_columns(c[1], c[4], c[10]);
         let w2 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[5], c[3], c[7]);
+        let F = Mat3::from_columns(c[1], c[5], c[11]);
         let w3 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[8], c[9], c[2]);
+        let F = Mat3::from_columns(c[2], c[6], c[8]);
         let w4 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[8], c[10], c[4]);
+        let F = Mat3::from_columns(c[2], c[7], c[9]);
         let w5 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[11], c[9], c[6]);
+        let F = Mat3::from_columns(c[3], c[6], c[10]);
         let w6 = energy_of(&D, &F);
-        let F = Mat3::from_columns(c[11], c[10], c[7]);
+        let F = Mat3::from_columns(c[3], c[7], c[11]);
         let w7 = energy_of(&D, &F);
         w0 + w1 + w2 + w3 + w4 + w5 + w6 + w7
     }
@@ -243,37 +241,38 @@ impl DerivedElement<8> for StableNeoHookeanHex8Box {
     #[inline(always)]
     fn forces<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 8], at: &impl RestSamples<R>) -> [Vec3<R>; 8] {
         let (X, volume) = at.sample(0);
-        let c = scaled(columns(x), &X);
+        let K = along(&X, MODES);
+        let c = columns(x, &K);
         let D = Constants::of(p, volume);
-        let F = Mat3::from_columns(c[0], c[1], c[2]);
+        let F = Mat3::from_columns(c[0], c[4], c[8]);
         let [h0_0, h0_1, h0_2] = stress_of(&D, &F).columns;
-        let F = Mat3::from_columns(c[0], c[3], c[4]);
+        let F = Mat3::from_columns(c[0], c[5], c[9]);
         let [h1_0, h1_1, h1_2] = stress_of(&D, &F).columns;
         let s0 = h0_0 + h1_0;
-        let F = Mat3::from_columns(c[5], c[1], c[6]);
+        let F = Mat3::from_columns(c[1], c[4], c[10]);
         let [h2_0, h2_1, h2_2] = stress_of(&D, &F).columns;
-        let s1 = h0_1 + h2_1;
-        let F = Mat3::from_columns(c[5], c[3], c[7]);
+        let s4 = h0_1 + h2_1;
+        let F = Mat3::from_columns(c[1], c[5], c[11]);
         let [h3_0, h3_1, h3_2] = stress_of(&D, &F).columns;
-        let s5 = h2_0 + h3_0;
-        let s3 = h1_1 + h3_1;
-        let F = Mat3::from_columns(c[8], c[9], c[2]);
+        let s1 = h2_0 + h3_0;
+        let s5 = h1_1 + h3_1;
+        let F = Mat3::from_columns(c[2], c[6], c[8]);
         let [h4_0, h4_1, h4_2] = stress_of(&D, &F).columns;
-        let s2 = h0_2 + h4_2;
-        let F = Mat3::from_columns(c[8], c[10], c[4]);
+        let s8 = h0_2 + h4_2;
+        let F = Mat3::from_columns(c[2], c[7], c[9]);
         let [h5_0, h5_1, h5_2] = stress_of(&D, &F).columns;
-        let s8 = h4_0 + h5_0;
-        let s4 = h1_2 + h5_2;
-        let F = Mat3::from_columns(c[11], c[9], c[6]);
+        let s2 = h4_0 + h5_0;
+        let s9 = h1_2 + h5_2;
+        let F = Mat3::from_columns(c[3], c[6], c[10]);
         let [h6_0, h6_1, h6_2] = stress_of(&D, &F).columns;
-        let s9 = h4_1 + h6_1;
-        let s6 = h2_2 + h6_2;
-        let F = Mat3::from_columns(c[11], c[10], c[7]);
+        let s6 = h4_1 + h6_1;
+        let s10 = h2_2 + h6_2;
+        let F = Mat3::from_columns(c[3], c[7], c[11]);
         let [h7_0, h7_1, h7_2] = stress_of(&D, &F).columns;
-        let s11 = h6_0 + h7_0;
-        let s10 = h5_1 + h7_1;
-        let s7 = h3_2 + h7_2;
-        to_nodes(&scaled([s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11], &X))
+        let s3 = h6_0 + h7_0;
+        let s7 = h5_1 + h7_1;
+        let s11 = h3_2 + h7_2;
+        to_nodes(&[s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11], &K)
     }
 
     #[inline(always)]
@@ -284,45 +283,46 @@ impl DerivedElement<8> for StableNeoHookeanHex8Box {
         at: &impl RestSamples<R>,
     ) -> [Vec3<R>; 8] {
         let (X, volume) = at.sample(0);
-        let c = scaled(columns(x), &X);
-        let dc = scaled(columns(dx), &X);
+        let K = along(&X, MODES);
+        let c = columns(x, &K);
+        let dc = columns(dx, &K);
         let D = Constants::of(p, volume);
-        let F = Mat3::from_columns(c[0], c[1], c[2]);
-        let dF = Mat3::from_columns(dc[0], dc[1], dc[2]);
+        let F = Mat3::from_columns(c[0], c[4], c[8]);
+        let dF = Mat3::from_columns(dc[0], dc[4], dc[8]);
         let [h0_0, h0_1, h0_2] = differential_of(&D, &F, &dF).columns;
-        let F = Mat3::from_columns(c[0], c[3], c[4]);
-        let dF = Mat3::from_columns(dc[0], dc[3], dc[4]);
+        let F = Mat3::from_columns(c[0], c[5], c[9]);
+        let dF = Mat3::from_columns(dc[0], dc[5], dc[9]);
         let [h1_0, h1_1, h1_2] = differential_of(&D, &F, &dF).columns;
         let s0 = h0_0 + h1_0;
-        let F = Mat3::from_columns(c[5], c[1], c[6]);
-        let dF = Mat3::from_columns(dc[5], dc[1], dc[6]);
+        let F = Mat3::from_columns(c[1], c[4], c[10]);
+        let dF = Mat3::from_columns(dc[1], dc[4], dc[10]);
         let [h2_0, h2_1, h2_2] = differential_of(&D, &F, &dF).columns;
-        let s1 = h0_1 + h2_1;
-        let F = Mat3::from_columns(c[5], c[3], c[7]);
-        let dF = Mat3::from_columns(dc[5], dc[3], dc[7]);
+        let s4 = h0_1 + h2_1;
+        let F = Mat3::from_columns(c[1], c[5], c[11]);
+        let dF = Mat3::from_columns(dc[1], dc[5], dc[11]);
         let [h3_0, h3_1, h3_2] = differential_of(&D, &F, &dF).columns;
-        let s5 = h2_0 + h3_0;
-        let s3 = h1_1 + h3_1;
-        let F = Mat3::from_columns(c[8], c[9], c[2]);
-        let dF = Mat3::from_columns(dc[8], dc[9], dc[2]);
+        let s1 = h2_0 + h3_0;
+        let s5 = h1_1 + h3_1;
+        let F = Mat3::from_columns(c[2], c[6], c[8]);
+        let dF = Mat3::from_columns(dc[2], dc[6], dc[8]);
         let [h4_0, h4_1, h4_2] = differential_of(&D, &F, &dF).columns;
-        let s2 = h0_2 + h4_2;
-        let F = Mat3::from_columns(c[8], c[10], c[4]);
-        let dF = Mat3::from_columns(dc[8], dc[10], dc[4]);
+        let s8 = h0_2 + h4_2;
+        let F = Mat3::from_columns(c[2], c[7], c[9]);
+        let dF = Mat3::from_columns(dc[2], dc[7], dc[9]);
         let [h5_0, h5_1, h5_2] = differential_of(&D, &F, &dF).columns;
-        let s8 = h4_0 + h5_0;
-        let s4 = h1_2 + h5_2;
-        let F = Mat3::from_columns(c[11], c[9], c[6]);
-        let dF = Mat3::from_columns(dc[11], dc[9], dc[6]);
+        let s2 = h4_0 + h5_0;
+        let s9 = h1_2 + h5_2;
+        let F = Mat3::from_columns(c[3], c[6], c[10]);
+        let dF = Mat3::from_columns(dc[3], dc[6], dc[10]);
         let [h6_0, h6_1, h6_2] = differential_of(&D, &F, &dF).columns;
-        let s9 = h4_1 + h6_1;
-        let s6 = h2_2 + h6_2;
-        let F = Mat3::from_columns(c[11], c[10], c[7]);
-        let dF = Mat3::from_columns(dc[11], dc[10], dc[7]);
+        let s6 = h4_1 + h6_1;
+        let s10 = h2_2 + h6_2;
+        let F = Mat3::from_columns(c[3], c[7], c[11]);
+        let dF = Mat3::from_columns(dc[3], dc[7], dc[11]);
         let [h7_0, h7_1, h7_2] = differential_of(&D, &F, &dF).columns;
-        let s11 = h6_0 + h7_0;
-        let s10 = h5_1 + h7_1;
-        let s7 = h3_2 + h7_2;
-        to_nodes(&scaled([s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11], &X))
+        let s3 = h6_0 + h7_0;
+        let s7 = h5_1 + h7_1;
+        let s11 = h3_2 + h7_2;
+        to_nodes(&[s0, s1, s2, s3, s4, s5, s6, s7, s8, s9, s10, s11], &K)
     }
 }
