@@ -8,9 +8,8 @@ use crate::Real;
 
 /// `S::F64_LANES` numbers with the token that proves the processor can compute with them.
 //
-// Aligned, since arrays of numbers, as the widest registers are kept in, are not: on a stack that no type asks to be aligned each access of
-// 64 bytes would touch two lines of the cache. For this much the compiler aligns a stack that holds registers to the whole register, and no
-// register of these processors is padded.
+// Aligned, because the registers of the processor that are kept on the stack would not be: each access of 64 bytes would touch two lines of
+// the cache. For this much the compiler aligns such a stack to whole registers, and none of 32 or 64 bytes is padded.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(target_arch = "x86_64", repr(align(32)))]
 pub struct Lanes<S: Simd> {

@@ -303,7 +303,8 @@ impl OfMetric {
     fn of(graph: &mut Graph, energy: Expr, deformation: Expr) -> Option<Self> {
         let [metric, variation] = ["C", "dC"].map(|name| graph.symbol(name, Shape::Matrix));
         let transposed = graph.transpose(deformation);
-        let (product, square) = (graph.multiply(transposed, deformation), graph.dot(deformation, deformation));
+        let (product, square) =
+            (graph.multiply(transposed, deformation), graph.dot(deformation, deformation));
         let trace = graph.trace(metric);
         let energy = graph.substitute(energy, &HashMap::from([(product, metric), (square, trace)]));
         if graph.depends(&[energy], &[deformation])[energy.index()] {
@@ -570,7 +571,9 @@ impl File<'_> {
             line(&format!("const C: [f64; {}] = [{}];\n", numbers.len(), numbers.join(", ")));
         }
         if let Some(corners) = &fields.corners {
-            line("/// Weights of what is constant, linear and bilinear in the other coordinates, at the samples.");
+            line(
+                "/// Weights of what is constant, linear and bilinear in the other coordinates, at the samples.",
+            );
             let weights: Vec<String> = corners.weights().iter().map(|weight| format!("{weight:?}")).collect();
             line(&format!("const MODES: [f64; 3] = [{}];\n", weights.join(", ")));
         }

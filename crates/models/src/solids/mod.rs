@@ -313,10 +313,8 @@ impl<'a> Sorting for ByLaw<'a> {
     fn alike(&self, class: &Class<'a>) -> Alike {
         let has_one_shape = class.shape.is_some();
         let is_mixed = has_one_shape && self.kernels == Kernels::FastestAlike;
-        Alike {
-            has_one_shape,
-            least_blocks: if is_mixed { MIXED_BLOCKS } else { Alike::IN_KIND.least_blocks },
-        }
+        let least_blocks = if is_mixed { MIXED_BLOCKS } else { derived::least_blocks(class.map) };
+        Alike { has_one_shape, least_blocks }
     }
 
     fn blocks_at_once(&self, kernel: &Box<dyn Kernel>) -> usize {

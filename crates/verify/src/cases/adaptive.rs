@@ -275,7 +275,11 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "exp35_hung_falls",
         what: "how this deviation falls with the threshold, changes of length of 20 % and of 10 %",
-        refinement: Some(Refinement { size_of: "threshold", runs: BLOCK_THRESHOLDS, limit: Limit::Known(BOTTOM_OF_SECOND) }),
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: BLOCK_THRESHOLDS,
+            limit: Limit::Known(BOTTOM_OF_SECOND),
+        }),
         // in proportion to the threshold
         reference: 1.0,
         tolerance: Tolerance::AtLeast,
@@ -287,7 +291,11 @@ pub(super) const CASES: &[Case] = &[
         id: "exp35_hung_share",
         what: "how the share of the hung block that keeps the first law falls with the threshold, changes of length of 20 % and of 10 %",
         scene: "hung_block",
-        refinement: Some(Refinement { size_of: "threshold", runs: BLOCK_THRESHOLDS, limit: Limit::Known(1.0) }),
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: BLOCK_THRESHOLDS,
+            limit: Limit::Known(1.0),
+        }),
         mutation: "bodies.block.adapt.edge_length=0.15",
         reading: SHARE.reading.after(1000),
         ..SHARE

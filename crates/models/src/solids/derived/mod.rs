@@ -30,6 +30,7 @@ use souple_math::{Mat3, Real, Vec3};
 use souple_mesh::{Cell, ElementKind, Mesh, QuadratureRule};
 
 use super::kernel::Kernel;
+use super::layout::Alike;
 use crate::derive::MapKind;
 use crate::materials::{AnyLaw, Law, LawVisitor, MaterialLaw, Parameters};
 use kernel::DerivedKernel;
@@ -170,6 +171,18 @@ impl LawVisitor for Names {
 
     fn visit<L: Law>(self, _: L) -> Self::Output {
         <L::Parameters<f64> as Parameters<f64>>::NAMES
+    }
+}
+
+/// Blocks of lanes that a chunk of boxes has at least. Of the numbers of their samples a kernel reads one in eight, so that more of them stay
+/// near; and what a chunk does for each of its nodes, which it shares with others, is a third of the time where a box has 2.3 of them.
+const BOX_BLOCKS: usize = 16;
+
+/// Blocks of lanes that a chunk of cells with this map has at least.
+pub(super) fn least_blocks(map: MapKind) -> usize {
+    match map {
+        MapKind::General => Alike::IN_KIND.least_blocks,
+        MapKind::Box => BOX_BLOCKS,
     }
 }
 

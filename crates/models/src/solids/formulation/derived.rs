@@ -6,9 +6,10 @@ use souple_table::Entry;
 use super::{BuildFormulation, FormulationError, name_of};
 use crate::derive::MapKind;
 use crate::materials::MaterialLaw;
-use crate::solids::derived::{Wanted, kernel, map_of};
+use crate::solids::derived::{Wanted, kernel, least_blocks, map_of};
 use crate::solids::elements::Sorting;
 use crate::solids::kernel::Kernel;
+use crate::solids::layout::Alike;
 use crate::solids::{ByLaw, Kernels, Section, Shapes, SolidDescription, SolidForce};
 
 const NAME: &str = "derived";
@@ -92,6 +93,10 @@ impl<'a> Sorting for ByPair<'a> {
     fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, class: &Self::Law) -> Box<dyn Kernel> {
         let derived = self.derived(kind, rule, class);
         derived.unwrap_or_else(|| unreachable!("found when cells were sorted"))
+    }
+
+    fn alike(&self, (_, map): &Self::Law) -> Alike {
+        Alike { least_blocks: least_blocks(*map), ..Alike::IN_KIND }
     }
 
     fn blocks_at_once(&self, kernel: &Box<dyn Kernel>) -> usize {
