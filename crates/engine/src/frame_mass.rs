@@ -6,7 +6,7 @@
 use pulp::{Arch, Simd, WithSimd};
 use souple_math::Vec3;
 
-use crate::kinematics::{Kinematics, UnknownKind};
+use crate::kinematics::Kinematics;
 use crate::mass::Mass;
 
 /// Rows of a frame.
@@ -41,7 +41,8 @@ impl FrameMass {
         let mut frame_of_row = vec![None; mass.diagonal.len()];
         let mut row = 0;
         for (kind, _) in kinematics.unknowns() {
-            if kind != UnknownKind::Point {
+            // of modes too few are alike to be worth tiles
+            if kind.row_count() == ROWS {
                 frame_of_row[row..row + ROWS].fill(Some(row as u32));
             }
             row += kind.row_count();
@@ -158,6 +159,7 @@ impl WithSimd for Products<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::UnknownKind;
 
     /// Tiles and what is left over are the matrix that they are made of, with a point between the frames and a derived row behind.
     #[test]

@@ -4,7 +4,6 @@ use souple_math::Vec3;
 use souple_solve::{BlockMatrix, reduce};
 
 use crate::constraint::Constraint;
-use crate::kinematics::UnknownKind;
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Rows, Surroundings, System, SystemWorkspace};
@@ -73,7 +72,7 @@ pub fn row_accelerations_at(
     let mut of_blocks = vec![Vec3::ZERO; system.kinematics.block_count()];
     led_accelerations_at(system, around, when, state, ws, &mut of_blocks)?;
     system.kinematics.velocities_into(&state.q, &of_blocks, out);
-    if system.kinematics.has_rigid_frames() {
+    if system.kinematics.has_turning_frames() {
         bias_into(system, state, &ws.rows, &mut ws.row_scratch);
         reduce::add_scaled(out, 1.0, &ws.row_scratch);
     }
@@ -120,7 +119,7 @@ fn from_forces(
     ws: &mut SystemWorkspace,
     out: &mut [Vec3],
 ) -> Result<StepReport, StepError> {
-    if system.kinematics.has_rigid_frames() {
+    if system.kinematics.has_turning_frames() {
         bias_into(system, state, &ws.rows, &mut ws.row_scratch);
         system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
     }
@@ -204,7 +203,7 @@ pub fn take_along(
 /// `matrix += TᵀMT`.
 pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
     let kinematics = &system.kinematics;
-    let map = |row: u32| kinematics.position_map(row, q);
+    let map = |row: u32| kinematics.position_maps(row, q);
     for (row, mass) in system.mass.diagonal.iter().enumerate().filter(|(_, mass)| **mass != 0.0) {
         add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| {
             left.transpose_mul(right) * *mass
@@ -219,19 +218,19 @@ pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatri
     }
 }
 
-/// `ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the axes of rigid frames.
+/// `ẍ_bias`, the acceleration rows have while velocity blocks stay as they are.
 fn bias_into(system: &System, state: &SystemState, rows: &Rows, bias: &mut Vec<Vec3>) {
     bias.clear();
     bias.resize(rows.positions.len(), Vec3::ZERO);
     let mut row = 0;
-    for (kind, blocks) in system.kinematics.unknowns() {
-        if kind == UnknownKind::RigidFrame {
-            let omega = state.v[blocks.start + 1];
-            for k in 1..4 {
-                bias[row + k] = omega.cross(omega.cross(rows.positions[row + k]));
+    for (kind, _) in system.kinematics.unknowns() {
+        let next = row + kind.row_count();
+        if kind.turns() {
+            for (row, bias) in (row..next).zip(&mut bias[row..next]) {
+                *bias = system.kinematics.bias(row as u32, &rows.positions, &state.v);
             }
         }
-        row += kind.row_count();
+        row = next;
     }
     system.kinematics.derive_rows(bias);
 }

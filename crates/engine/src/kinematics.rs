@@ -1,12 +1,16 @@
 //! Three spaces: *unknowns* move, *rows* follow them linearly, *samples* read rows.
 //!
-//! An unknown is a point (3 velocities), a rigid frame (6) or an affine frame (12). Its configuration is a
-//! run of [`Vec3`] *free rows*: a point is its position; a frame is its origin and its three axes, so that a
-//! material point `x = Σ weight · row` and a deformation gradient `F = Σ row ⊗ gradient` are linear in rows
-//! whatever carries them. Its velocity is a run of *blocks* of three: 1, 2 (linear, angular) or 4.
+//! An unknown is a point (3 velocities), a rigid frame (6), an affine frame (12) or a floating frame (6 and one for
+//! each of its modes). Its configuration is a run of [`Vec3`] *free rows*: a point is its position; a frame is its
+//! origin and its three axes, so that a material point `x = Σ weight · row` and a deformation gradient
+//! `F = Σ row ⊗ gradient` are linear in rows whatever carries them. Its velocity is a run of *blocks* of three:
+//! 1, 2 (linear, angular), 4, or 2 and those of amplitudes, three to a block.
 //!
 //! The rigid reduction happens here and nowhere else: axes `aₖ` turn with `ȧₖ = ω × aₖ`, forces come back as
-//! the torque `Σ aₖ × fₖ`.
+//! the torque `Σ aₖ × fₖ`. So does that of modes: of each amplitude `u` a floating frame has the three rows `bₖ = u aₖ`,
+//! and `x = c + Σ sₖ aₖ + Σ φₖ bₖ = c + R (s + u φ)` is linear in rows with weights that never change; they move with
+//! `ḃₖ = ω × bₖ + u̇ aₖ`, and forces come back as `Σ bₖ × fₖ` and `Σ aₖ · fₖ`. A row of a mode moves with two blocks, all
+//! others with one.
 //!
 //! After the free rows stand *derived* rows (hanging nodes, ghosts, attachments), each a weighted sum of
 //! earlier rows. Positions and velocities run forward through them; forces run back transposed, unless a
@@ -25,14 +29,24 @@ pub enum UnknownKind {
     Point,
     RigidFrame,
     AffineFrame,
+    /// A rigid frame and the amplitudes of shapes that turn with it.
+    FloatingFrame {
+        modes: u32,
+    },
 }
+
+/// Rows of a frame that turns or stretches: its origin and its axes.
+const ROWS_OF_FRAME: usize = 4;
+/// Blocks of a frame that turns: linear and angular.
+const BLOCKS_OF_RIGID: usize = 2;
 
 impl UnknownKind {
     /// Free rows of its configuration.
     pub fn row_count(self) -> usize {
         match self {
             Self::Point => 1,
-            Self::RigidFrame | Self::AffineFrame => 4,
+            Self::RigidFrame | Self::AffineFrame => ROWS_OF_FRAME,
+            Self::FloatingFrame { modes } => ROWS_OF_FRAME + 3 * modes as usize,
         }
     }
 
@@ -40,9 +54,33 @@ impl UnknownKind {
     pub fn block_count(self) -> usize {
         match self {
             Self::Point => 1,
-            Self::RigidFrame => 2,
+            Self::RigidFrame => BLOCKS_OF_RIGID,
             Self::AffineFrame => 4,
+            Self::FloatingFrame { modes } => BLOCKS_OF_RIGID + (modes as usize).div_ceil(3),
         }
+    }
+
+    /// Whether it has axes that turn.
+    pub fn turns(self) -> bool {
+        matches!(self, Self::RigidFrame | Self::FloatingFrame { .. })
+    }
+
+    /// Amplitudes of modes.
+    fn mode_count(self) -> usize {
+        match self {
+            Self::FloatingFrame { modes } => modes as usize,
+            Self::Point | Self::RigidFrame | Self::AffineFrame => 0,
+        }
+    }
+
+    /// Of the block `part` of such an unknown: the components that are amplitudes of no mode, because modes are no multiple
+    /// of three. They have no inertia, and are to be held.
+    pub fn idle_components(self, part: usize) -> [bool; 3] {
+        let modes = self.mode_count();
+        let first = |part: usize| 3 * (part - BLOCKS_OF_RIGID);
+        let is_idle =
+            |component: usize| modes > 0 && part >= BLOCKS_OF_RIGID && first(part) + component >= modes;
+        [0, 1, 2].map(is_idle)
     }
 }
 
@@ -78,6 +116,50 @@ enum Carrier {
     Translation,
     /// `ẋ = ω × x`: axes of rigid frames.
     Rotation,
+    /// `ẋ = ω × x + u̇ a`: rows of modes, `x = u a`; the block is that of `ω`.
+    Mode {
+        /// The free row of `a`.
+        axis: u32,
+        /// The block and the component of `u`.
+        amplitude: u32,
+        component: u8,
+    },
+}
+
+/// How a free row follows velocity blocks, or their displacements: the derivative by each block that moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowMaps {
+    pub first: (u32, Mat3),
+    /// Of rows of modes: that by the block of the amplitude.
+    pub second: Option<(u32, Mat3)>,
+}
+
+impl RowMaps {
+    pub fn iter(&self) -> impl Iterator<Item = (u32, &Mat3)> {
+        let first = (self.first.0, &self.first.1);
+        std::iter::once(first).chain(self.second.iter().map(|(block, map)| (*block, map)))
+    }
+
+    /// What the row does where blocks are `delta`.
+    pub fn apply(&self, delta: &[Vec3]) -> Vec3 {
+        self.iter().map(|(block, map)| *map * delta[block as usize]).sum()
+    }
+
+    /// Adds what a force on the row is on blocks.
+    pub fn add_transposed(&self, force: Vec3, blocks: &mut [Vec3]) {
+        for (block, map) in self.iter() {
+            blocks[block as usize] += map.transpose_apply(force);
+        }
+    }
+}
+
+/// What a force on a free row adds to the tangent because the row's maps turn with the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geometric {
+    /// On the diagonal of the angular block.
+    pub turn: (u32, Mat3),
+    /// Of rows of modes: between the angular block and that of the amplitude, and transposed the other way.
+    pub coupling: Option<(u32, Mat3)>,
 }
 
 /// The map between unknowns and rows.
@@ -163,6 +245,17 @@ impl Kinematics {
                 UnknownKind::AffineFrame => {
                     self.carriers.extend((0..4).map(|k| (block + k, Carrier::Translation)));
                 }
+                UnknownKind::FloatingFrame { modes } => {
+                    let axes = self.carriers.len() as u32 + 1;
+                    self.carriers.push((block, Carrier::Translation));
+                    self.carriers.extend([(block + 1, Carrier::Rotation); 3]);
+                    for mode in 0..modes {
+                        let (amplitude, component) =
+                            (block + BLOCKS_OF_RIGID as u32 + mode / 3, (mode % 3) as u8);
+                        let row = |k| (block + 1, Carrier::Mode { axis: axes + k, amplitude, component });
+                        self.carriers.extend((0..3).map(row));
+                    }
+                }
             }
         }
         self.identity = OnceLock::new();
@@ -225,8 +318,9 @@ impl Kinematics {
         self.has_frames() && self.runs.iter().all(|run| run.kind != UnknownKind::Point || run.count == 0)
     }
 
-    pub fn has_rigid_frames(&self) -> bool {
-        self.runs.iter().any(|run| run.kind == UnknownKind::RigidFrame)
+    /// Whether some frame turns: rigid and floating ones do.
+    pub fn has_turning_frames(&self) -> bool {
+        self.runs.iter().any(|run| run.kind.turns())
     }
 
     /// Whether every row returns the forces on it; where one does not, momentum is not conserved.
@@ -268,9 +362,24 @@ impl Kinematics {
         (row < free).then(|| slice::from_ref(&self.identity.get_or_init(made)[row]))
     }
 
-    /// The velocity block that moves a free row.
+    /// The velocity block that moves a free row; of a row of a mode the angular one.
     pub fn block_of(&self, free_row: u32) -> u32 {
         self.carriers[free_row as usize].0
+    }
+
+    /// All velocity blocks that move a free row.
+    pub fn blocks_of(&self, free_row: u32) -> impl Iterator<Item = u32> {
+        let (block, carrier) = self.carriers[free_row as usize];
+        let second = match carrier {
+            Carrier::Mode { amplitude, .. } => Some(amplitude),
+            Carrier::Translation | Carrier::Rotation => None,
+        };
+        std::iter::once(block).chain(second)
+    }
+
+    /// Whether two blocks move a free row.
+    pub fn is_of_mode(&self, free_row: u32) -> bool {
+        matches!(self.carriers[free_row as usize].1, Carrier::Mode { .. })
     }
 
     /// The first free row that a velocity block moves; `None` beyond the last block.
@@ -289,15 +398,15 @@ impl Kinematics {
     }
 
     /// The free row that a velocity block translates: a point, an origin, an affine axis; `None` for the
-    /// angular block of a rigid frame.
+    /// angular block of a frame that turns and for amplitudes.
     pub fn point_block_row(&self, block: u32) -> Option<u32> {
         let block = block as usize;
         let size = |run: &Run| run.kind.block_count();
         let holds = |run: &&Run| (run.first_block..run.first_block + run.count * size(run)).contains(&block);
         let run = self.runs.iter().find(holds)?;
         let (unknown, part) = ((block - run.first_block) / size(run), (block - run.first_block) % size(run));
-        let angular = run.kind == UnknownKind::RigidFrame && part == 1;
-        (!angular).then(|| (run.first_row + unknown * run.kind.row_count() + part) as u32)
+        let translates = !run.kind.turns() || part == 0;
+        translates.then(|| (run.first_row + unknown * run.kind.row_count() + part) as u32)
     }
 
     /// Positions of all rows from the configuration `q` (free rows), and their velocities `ẋ = T(q) v`.
@@ -351,6 +460,10 @@ impl Kinematics {
             rows[row] = match carrier {
                 Carrier::Translation => v[block as usize],
                 Carrier::Rotation => v[block as usize].cross(q[row]),
+                Carrier::Mode { axis, amplitude, component } => {
+                    let rate = v[amplitude as usize][usize::from(component)];
+                    v[block as usize].cross(q[row]) + q[axis as usize] * rate
+                }
             };
         }
     }
@@ -380,8 +493,11 @@ impl Kinematics {
         for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
             blocks[block as usize] += match carrier {
                 Carrier::Translation => rows[row],
-                Carrier::Rotation => q[row].cross(rows[row]),
+                Carrier::Rotation | Carrier::Mode { .. } => q[row].cross(rows[row]),
             };
+            if let Carrier::Mode { axis, amplitude, component } = carrier {
+                blocks[amplitude as usize][usize::from(component)] += q[axis as usize].dot(rows[row]);
+            }
         }
     }
 
@@ -398,7 +514,7 @@ impl Kinematics {
         }
     }
 
-    /// Moves a configuration by a displacement of its velocity blocks: points and affine axes add, rotations
+    /// Moves a configuration by a displacement of its velocity blocks: points, affine axes and amplitudes add, rotations
     /// advance by the exponential map from the left.
     pub fn retract(&self, q: &mut [Vec3], displacement: &[Vec3]) {
         self.retract_scaled(q, displacement, 1.0);
@@ -421,10 +537,16 @@ impl Kinematics {
                             q[row + k] += displacement[block + k] * scale;
                         }
                     }
-                    UnknownKind::RigidFrame => {
+                    UnknownKind::RigidFrame | UnknownKind::FloatingFrame { .. } => {
                         q[row] += displacement[block] * scale;
-                        let axes = Mat3::from_columns(q[row + 1], q[row + 2], q[row + 3]);
+                        let axes = axes_at(q, row);
                         let turned = orthonormalised(&(exponential(displacement[block + 1] * scale) * axes));
+                        let amplitudes = &displacement[block + BLOCKS_OF_RIGID..];
+                        for mode in 0..run.kind.mode_count() {
+                            let u = amplitude_at(q, row, mode) + amplitudes[mode / 3][mode % 3] * scale;
+                            let first = row + ROWS_OF_FRAME + 3 * mode;
+                            q[first..first + 3].copy_from_slice(&turned.columns.map(|axis| axis * u));
+                        }
                         q[row + 1..row + 4].copy_from_slice(&turned.columns);
                     }
                 }
@@ -437,7 +559,8 @@ impl Kinematics {
         for run in &self.runs {
             for unknown in 0..run.count {
                 let row = run.first_row + unknown * run.kind.row_count();
-                let block = run.first_block + unknown * run.kind.block_count();
+                let size = run.kind.block_count();
+                let block = run.first_block + unknown * size;
                 match run.kind {
                     UnknownKind::Point => displacement[block] = to[row] - from[row],
                     UnknownKind::AffineFrame => {
@@ -445,49 +568,94 @@ impl Kinematics {
                             displacement[block + k] = to[row + k] - from[row + k];
                         }
                     }
-                    UnknownKind::RigidFrame => {
+                    UnknownKind::RigidFrame | UnknownKind::FloatingFrame { .. } => {
                         displacement[block] = to[row] - from[row];
-                        let axes = |q: &[Vec3]| Mat3::from_columns(q[row + 1], q[row + 2], q[row + 3]);
-                        displacement[block + 1] = logarithm(&axes(to).mul_transpose(&axes(from)));
+                        displacement[block + 1] =
+                            logarithm(&axes_at(to, row).mul_transpose(&axes_at(from, row)));
+                        let blocks = block + BLOCKS_OF_RIGID..block + size;
+                        displacement[blocks].fill(Vec3::ZERO);
+                        for mode in 0..run.kind.mode_count() {
+                            displacement[block + BLOCKS_OF_RIGID + mode / 3][mode % 3] =
+                                amplitude_at(to, row, mode) - amplitude_at(from, row, mode);
+                        }
                     }
                 }
             }
         }
     }
 
-    /// `T` of a free row: the derivative of its position by the displacement of its block.
-    pub fn position_map(&self, free_row: u32, q: &[Vec3]) -> Mat3 {
-        match self.carriers[free_row as usize].1 {
-            Carrier::Translation => Mat3::IDENTITY,
+    /// `T` of a free row: the derivatives of its position by the displacements of its blocks.
+    pub fn position_maps(&self, free_row: u32, q: &[Vec3]) -> RowMaps {
+        let (block, carrier) = self.carriers[free_row as usize];
+        match carrier {
+            Carrier::Translation => RowMaps { first: (block, Mat3::IDENTITY), second: None },
             // δa = δθ × a
-            Carrier::Rotation => -q[free_row as usize].cross_matrix(),
+            Carrier::Rotation => {
+                RowMaps { first: (block, -q[free_row as usize].cross_matrix()), second: None }
+            }
+            // δb = δθ × b + δu a
+            Carrier::Mode { axis, amplitude, component } => RowMaps {
+                first: (block, -q[free_row as usize].cross_matrix()),
+                second: Some((amplitude, by_component(q[axis as usize], component))),
+            },
         }
     }
 
-    /// `D` of a free row: the derivative of its velocity `T(q) v(q)` by the displacement of its block, where
+    /// `D` of a free row: the derivatives of its velocity `T(q) v(q)` by the displacements of its blocks, where
     /// `v = rate · difference(q, q_start)` as a one-step implicit method has it; on what only translates a constant may be
     /// added to that.
-    pub fn velocity_map(&self, free_row: u32, q: &[Vec3], v: &[Vec3], rate: f64) -> Mat3 {
+    pub fn velocity_maps(&self, free_row: u32, q: &[Vec3], v: &[Vec3], rate: f64) -> RowMaps {
         let (block, carrier) = self.carriers[free_row as usize];
+        // δ(ω × x) = ω × (δθ × x) + rate (J⁻¹ δθ) × x
+        let turning = || {
+            let omega = v[block as usize];
+            let x = q[free_row as usize].cross_matrix();
+            let inverse_jacobian = left_jacobian_inverse(omega * (1.0 / rate));
+            -(omega.cross_matrix() * x) - (x * inverse_jacobian) * rate
+        };
         match carrier {
-            Carrier::Translation => Mat3::IDENTITY * rate,
-            Carrier::Rotation => {
-                // δ(ω × a) = ω × (δθ × a) + rate (J⁻¹ δθ) × a
-                let omega = v[block as usize];
-                let axis = q[free_row as usize].cross_matrix();
-                let inverse_jacobian = left_jacobian_inverse(omega * (1.0 / rate));
-                -(omega.cross_matrix() * axis) - (axis * inverse_jacobian) * rate
+            Carrier::Translation => RowMaps { first: (block, Mat3::IDENTITY * rate), second: None },
+            Carrier::Rotation => RowMaps { first: (block, turning()), second: None },
+            // δ(ω × b + u̇ a), with δb = δθ × b + δu a, δa = δθ × a, δu̇ = rate δu
+            Carrier::Mode { axis, amplitude, component } => {
+                let a = q[axis as usize];
+                let u_rate = v[amplitude as usize][usize::from(component)];
+                let by_amplitude = v[block as usize].cross(a) + a * rate;
+                RowMaps {
+                    first: (block, turning() - a.cross_matrix() * u_rate),
+                    second: Some((amplitude, by_component(by_amplitude, component))),
+                }
             }
         }
     }
 
-    /// The geometric block `∂(Tᵀ f)/∂θ` that a force `f` on a free row adds to its block's diagonal.
-    pub fn geometric_block(&self, free_row: u32, q: &[Vec3], force: Vec3) -> Option<(u32, Mat3)> {
-        match self.carriers[free_row as usize] {
-            (_, Carrier::Translation) => None,
-            // δ(a × f) = (δθ × a) × f = f × (a × δθ)
-            (block, Carrier::Rotation) => {
-                Some((block, force.cross_matrix() * q[free_row as usize].cross_matrix()))
+    /// What a force `f` on a free row adds to the tangent of generalised forces, `∂(Tᵀ f)`; `None` of rows that only translate.
+    pub fn geometric(&self, free_row: u32, q: &[Vec3], force: Vec3) -> Option<Geometric> {
+        let (block, carrier) = self.carriers[free_row as usize];
+        // δ(x × f) = (δθ × x) × f = f × (x × δθ)
+        let turn = || (block, force.cross_matrix() * q[free_row as usize].cross_matrix());
+        match carrier {
+            Carrier::Translation => None,
+            Carrier::Rotation => Some(Geometric { turn: turn(), coupling: None }),
+            // δ(b × f) has δu (a × f) besides, and δ(a · f) = δθ · (a × f)
+            Carrier::Mode { axis, amplitude, component } => {
+                let by_amplitude = by_component(q[axis as usize].cross(force), component);
+                Some(Geometric { turn: turn(), coupling: Some((amplitude, by_amplitude)) })
+            }
+        }
+    }
+
+    /// The acceleration that a free row has while velocity blocks stay as they are: `ω × (ω × x)`, and `2 u̇ ω × a` of rows of modes.
+    pub fn bias(&self, free_row: u32, q: &[Vec3], v: &[Vec3]) -> Vec3 {
+        let (block, carrier) = self.carriers[free_row as usize];
+        let omega = v[block as usize];
+        let centripetal = || omega.cross(omega.cross(q[free_row as usize]));
+        match carrier {
+            Carrier::Translation => Vec3::ZERO,
+            Carrier::Rotation => centripetal(),
+            Carrier::Mode { axis, amplitude, component } => {
+                let rate = v[amplitude as usize][usize::from(component)];
+                centripetal() + omega.cross(q[axis as usize]) * (2.0 * rate)
             }
         }
     }
@@ -517,6 +685,22 @@ impl Kinematics {
 pub struct UnknownRange {
     pub rows: Range<usize>,
     pub blocks: Range<usize>,
+}
+
+/// Axes of the frame whose origin is that row.
+fn axes_at(q: &[Vec3], origin: usize) -> Mat3 {
+    Mat3::from_columns(q[origin + 1], q[origin + 2], q[origin + 3])
+}
+
+/// The amplitude of a mode of the frame whose origin is that row: `u = ⅓ Σ aₖ · bₖ`.
+fn amplitude_at(q: &[Vec3], origin: usize, mode: usize) -> f64 {
+    let first = origin + ROWS_OF_FRAME + 3 * mode;
+    (0..3).map(|k| q[origin + 1 + k].dot(q[first + k])).sum::<f64>() / 3.0
+}
+
+/// The derivative of `u a` by a block of which `u` is one component.
+fn by_component(a: Vec3, component: u8) -> Mat3 {
+    a.outer(Vec3::AXES[usize::from(component)])
 }
 
 /// Weights over free rows of `Σ weight · parent`, parents expanded, each free row once, in order.

@@ -687,6 +687,11 @@ fn places(kinematics: &Kinematics, reference: &[f64]) -> (Vec<Vec3>, Option<Vec<
         match kind {
             UnknownKind::Point => {}
             UnknownKind::RigidFrame => roles.push(BlockRole::Rotation),
+            // a rigid motion moves no amplitude
+            UnknownKind::FloatingFrame { .. } => {
+                roles.push(BlockRole::Rotation);
+                roles.extend(blocks.skip(2).map(|_| BlockRole::Axis(Vec3::ZERO)));
+            }
             UnknownKind::AffineFrame => roles.extend((1..4).map(|axis| BlockRole::Axis(row(first + axis)))),
         }
         first += kind.row_count();

@@ -1,7 +1,8 @@
 //! Natural frequencies of a system about where it stands: `K φ = ω² M φ`, constrained directions at rest.
 
 use souple_math::Vec3;
-use souple_solve::modes::{Modes, Settings, lowest_modes};
+use souple_solve::modes::lowest_modes;
+pub use souple_solve::modes::{Modes, Settings};
 use souple_solve::{BlockMatrix, SolveError};
 
 use crate::implicit::Rates;
@@ -19,6 +20,16 @@ pub enum ModesError {
         "`{force}` relates points by forces that are solved for in steps, which have no stiffness that modes could be found of; a stiff link, or a constraint with `augmented`, has one"
     )]
     Bound { force: String },
+}
+
+impl ModesError {
+    /// How many modes there are, where more were asked for.
+    pub fn available(&self) -> Option<usize> {
+        match self {
+            Self::Solve(SolveError::TooManyModes { available, .. }) => Some(*available),
+            _ => None,
+        }
+    }
 }
 
 /// The lowest modes about the placed rows; shapes are over velocity blocks.

@@ -107,12 +107,16 @@ impl ReferenceFactor {
         for (kind, blocks) in kinematics.unknowns() {
             let turn = match kind {
                 UnknownKind::Point => turn_of_point(kinematics, pattern, blocks.start, reference, q),
-                UnknownKind::RigidFrame => axes(q, row).mul_transpose(&axes(reference, row)),
+                UnknownKind::RigidFrame | UnknownKind::FloatingFrame { .. } => {
+                    axes(q, row).mul_transpose(&axes(reference, row))
+                }
                 UnknownKind::AffineFrame => {
                     polar(&axes(q, row).mul_transpose(&axes(reference, row))).rotation
                 }
             };
-            turns[blocks].fill(turn);
+            // amplitudes are those of shapes that turn along
+            let turning = if matches!(kind, UnknownKind::FloatingFrame { .. }) { 2 } else { blocks.len() };
+            turns[blocks.start..blocks.start + turning].fill(turn);
             row += kind.row_count();
         }
     }

@@ -16,7 +16,7 @@ use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 use crate::force::{Configuration, Declaration, Force, Scratch, TangentWeights};
 use crate::frame_mass::FrameMass;
 use crate::implicit::Rates;
-use crate::kinematics::Kinematics;
+use crate::kinematics::{Geometric, Kinematics, RowMaps};
 use crate::state::{Pair, SystemState};
 use crate::system::{Rows, Surroundings, System};
 
@@ -74,11 +74,12 @@ pub struct Linearisation<'a> {
 }
 
 impl Linearisation<'_> {
-    fn velocity_map(&self, free_row: u32) -> Mat3 {
+    fn velocity_maps(&self, free_row: u32) -> RowMaps {
+        let kinematics = &self.system.kinematics;
         if !self.rates.has_velocity() {
-            return Mat3::ZERO;
+            return RowMaps { first: (kinematics.block_of(free_row), Mat3::ZERO), second: None };
         }
-        self.system.kinematics.velocity_map(free_row, self.q, self.v, self.rates.velocity)
+        kinematics.velocity_maps(free_row, self.q, self.v, self.rates.velocity)
     }
 
     /// `g` over free rows as turns of rigid frames see it: without forces whose tangent leaves out what stress adds.
@@ -111,6 +112,22 @@ fn add_geometric(of_frame: Option<(u32, Mat3)>, curvature: Curvature, blocks: &m
     };
     add_block(blocks, block as usize, block as usize, &part);
     is_cut
+}
+
+/// Adds what the forces on a turning frame add between its turn and an amplitude, which no definite matrix has; whether any was left out.
+fn add_coupling(
+    turn: u32,
+    of_amplitude: Option<(u32, Mat3)>,
+    curvature: Curvature,
+    blocks: &mut BlockMatrix,
+) -> bool {
+    let Some((amplitude, coupling)) = of_amplitude else { return false };
+    if curvature == Curvature::Definite {
+        return coupling != Mat3::ZERO;
+    }
+    add_block(blocks, turn as usize, amplitude as usize, &coupling);
+    add_block(blocks, amplitude as usize, turn as usize, &coupling.transpose());
+    false
 }
 
 impl Tangent {
@@ -150,9 +167,9 @@ impl Tangent {
         blocks.set_zero();
         // each serves as many pairs as rows are coupled with its own
         let free_rows = 0..kinematics.free_row_count() as u32;
-        let position_maps: Vec<Mat3> =
-            free_rows.clone().map(|row| kinematics.position_map(row, at.q)).collect();
-        let velocity_maps: Vec<Mat3> = free_rows.map(|row| at.velocity_map(row)).collect();
+        let position_maps: Vec<RowMaps> =
+            free_rows.clone().map(|row| kinematics.position_maps(row, at.q)).collect();
+        let velocity_maps: Vec<RowMaps> = free_rows.map(|row| at.velocity_maps(row)).collect();
         let position_map = |row: u32| position_maps[row as usize];
         let velocity_map = |row: u32| velocity_maps[row as usize];
         // -Tᵀ ∂f/∂x T
@@ -181,14 +198,19 @@ impl Tangent {
         }
         self.rows = Some(rows);
         // ∂(Tᵀ) g
-        if kinematics.has_rigid_frames() {
+        if kinematics.has_turning_frames() {
             let mut unbalanced = std::mem::take(&mut self.unbalanced);
             unbalanced.resize(at.unbalanced.len(), Vec3::ZERO);
             at.turned_into(scratches, &mut unbalanced);
             // rows of a frame follow each other
             let mut of_frame: Option<(u32, Mat3)> = None;
             for (row, g) in unbalanced[..kinematics.free_row_count()].iter().enumerate() {
-                let Some((block, part)) = kinematics.geometric_block(row as u32, at.q, *g) else { continue };
+                let Some(Geometric { turn: (block, part), coupling }) =
+                    kinematics.geometric(row as u32, at.q, *g)
+                else {
+                    continue;
+                };
+                turned |= add_coupling(block, coupling, curvature, &mut blocks);
                 of_frame = match of_frame {
                     Some((last, sum)) if last == block => Some((last, sum + part)),
                     done => {
@@ -322,7 +344,7 @@ impl Tangent {
                 clique_blocks.extend(rows.iter().flat_map(|&row| {
                     let (forward, backward) =
                         (kinematics.forward(row as usize), kinematics.backward(row as usize));
-                    forward.iter().chain(backward).map(|&(free, _)| kinematics.block_of(free))
+                    forward.iter().chain(backward).flat_map(|&(free, _)| kinematics.blocks_of(free))
                 }));
                 clique_blocks.sort_unstable();
                 clique_blocks.dedup();
@@ -358,7 +380,7 @@ impl Tangent {
                 let blocks: Vec<u32> = rows
                     .iter()
                     .flat_map(|&row| {
-                        kinematics.forward(row).iter().map(|&(free, _)| kinematics.block_of(free))
+                        kinematics.forward(row).iter().flat_map(|&(free, _)| kinematics.blocks_of(free))
                     })
                     .collect();
                 builder
@@ -458,14 +480,15 @@ fn transform_rows(
     kinematics: &Kinematics,
     rows: &BlockMatrix,
     blocks: &mut BlockMatrix,
-    left_map: &dyn Fn(u32) -> Mat3,
-    right_map: &dyn Fn(u32) -> Mat3,
+    left_map: &dyn Fn(u32) -> RowMaps,
+    right_map: &dyn Fn(u32) -> RowMaps,
 ) {
     let (pattern, of_blocks) = (rows.pattern().clone(), blocks.pattern().clone());
     let free_rows = kinematics.free_row_count();
     for a in 0..pattern.block_count() {
-        let is_free = a < free_rows;
-        let left = if is_free { left_map(a as u32) } else { Mat3::IDENTITY };
+        // rows of modes move with two blocks, and are expanded like derived ones
+        let is_free = a < free_rows && !kinematics.is_of_mode(a as u32);
+        let left = if is_free { left_map(a as u32).first.1 } else { Mat3::IDENTITY };
         // columns of free rows ascend, and so do the columns of their blocks: no place is looked for twice
         let mut places = if is_free { of_blocks.slots(kinematics.block_of(a as u32) as usize) } else { 0..0 };
         for slot in pattern.slots(a) {
@@ -474,13 +497,13 @@ fn transform_rows(
             if value == Mat3::ZERO {
                 continue;
             }
-            if is_free && b < free_rows {
+            if is_free && b < free_rows && !kinematics.is_of_mode(b as u32) {
                 let column = kinematics.block_of(b as u32);
                 while places.start < places.end && of_blocks.columns()[places.start] < column {
                     places.start += 1;
                 }
                 if places.start < places.end && of_blocks.columns()[places.start] == column {
-                    blocks.add_at(places.start, &left.transpose_mul(&(value * right_map(b as u32))));
+                    blocks.add_at(places.start, &left.transpose_mul(&(value * right_map(b as u32).first.1)));
                 }
                 continue;
             }
@@ -496,14 +519,20 @@ pub fn add_congruent(
     kinematics: &Kinematics,
     blocks: &mut BlockMatrix,
     (a, b): (usize, usize),
-    left_map: &dyn Fn(u32) -> Mat3,
-    right_map: &dyn Fn(u32) -> Mat3,
+    left_map: &dyn Fn(u32) -> RowMaps,
+    right_map: &dyn Fn(u32) -> RowMaps,
     product: impl Fn(&Mat3, &Mat3) -> Mat3,
 ) {
     for &(i, weight_i) in kinematics.backward(a) {
+        let of_i = left_map(i);
         for &(j, weight_j) in kinematics.forward(b) {
-            let value = product(&left_map(i), &right_map(j)) * (weight_i * weight_j);
-            add_block(blocks, kinematics.block_of(i) as usize, kinematics.block_of(j) as usize, &value);
+            let of_j = right_map(j);
+            for (row, left) in of_i.iter() {
+                for (column, right) in of_j.iter() {
+                    let value = product(left, right) * (weight_i * weight_j);
+                    add_block(blocks, row as usize, column as usize, &value);
+                }
+            }
         }
     }
 }
@@ -531,9 +560,11 @@ pub struct OperatorBuffers {
     row_force: Vec<Vec3>,
     row_inertia: Vec<Vec3>,
     /// `D` of every free row.
-    velocity_maps: Vec<Mat3>,
+    velocity_maps: Vec<RowMaps>,
     /// `∂(Tᵀ) g` of every block.
     geometric: Vec<Mat3>,
+    /// The same between the turn of a frame and an amplitude.
+    couplings: Vec<(u32, u32, Mat3)>,
     /// Derived rows that forces of no pairs or masses look at; the others are there to be seen.
     derived: Vec<u32>,
     /// Made by the first product, with `derived`.
@@ -554,6 +585,7 @@ impl OperatorBuffers {
             row_inertia: rows(),
             velocity_maps: Vec::new(),
             geometric: Vec::new(),
+            couplings: Vec::new(),
             derived: Vec::new(),
             mass: None,
             seconds: 0.0,
@@ -569,9 +601,10 @@ impl OperatorBuffers {
     pub fn bytes(&self) -> usize {
         let Self { free, row_positions, row_velocities, row_force, row_inertia, .. } = self;
         let buffers = [free, row_positions, row_velocities, row_force, row_inertia];
-        let maps = [&self.velocity_maps, &self.geometric];
         buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
-            + maps.into_iter().map(|maps| size_of::<Mat3>() * maps.capacity()).sum::<usize>()
+            + size_of::<RowMaps>() * self.velocity_maps.capacity()
+            + size_of::<Mat3>() * self.geometric.capacity()
+            + size_of::<(u32, u32, Mat3)>() * self.couplings.capacity()
             + 4 * self.derived.capacity()
             + self.mass.as_ref().map_or(0, FrameMass::bytes)
     }
@@ -631,18 +664,22 @@ impl OperatorBuffers {
         self.velocity_maps.clear();
         if at.rates.has_velocity() {
             let free_rows = 0..kinematics.free_row_count() as u32;
-            self.velocity_maps.extend(free_rows.map(|row| at.velocity_map(row)));
+            self.velocity_maps.extend(free_rows.map(|row| at.velocity_maps(row)));
         }
         self.geometric.clear();
-        if kinematics.has_rigid_frames() {
+        self.couplings.clear();
+        if kinematics.has_turning_frames() {
             self.geometric.resize(kinematics.block_count(), Mat3::ZERO);
             at.turned_into(scratches, &mut self.row_force);
             for (row, g) in self.row_force[..kinematics.free_row_count()].iter().enumerate() {
-                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
+                if let Some(Geometric { turn: (block, geometric), coupling }) =
+                    kinematics.geometric(row as u32, at.q, *g)
+                {
                     self.geometric[block as usize] += match part {
                         Part::Whole => geometric,
                         Part::Symmetric => geometric.symmetric_part(),
                     };
+                    self.couplings.extend(coupling.map(|(amplitude, part)| (block, amplitude, part)));
                 }
             }
         }
@@ -710,8 +747,8 @@ impl<'a> TangentOperator<'a> {
         // δx = T δ,  δẋ = D δ
         kinematics.free_velocities_into(at.q, delta, row_positions);
         OperatorBuffers::derive(at, &buffers.derived, row_positions);
-        for (row, (velocity, map)) in row_velocities.iter_mut().zip(&*velocity_maps).enumerate() {
-            *velocity = *map * delta[kinematics.block_of(row as u32) as usize];
+        for (velocity, maps) in row_velocities.iter_mut().zip(&*velocity_maps) {
+            *velocity = maps.apply(delta);
         }
         if at.rates.has_velocity() {
             OperatorBuffers::derive(at, &buffers.derived, row_velocities);
@@ -749,12 +786,17 @@ impl<'a> TangentOperator<'a> {
         kinematics.forces_into(at.q, row_force, out);
         if is_halved {
             kinematics.return_forces(row_inertia);
-            for (row, (map, force)) in velocity_maps.iter().zip(&*row_inertia).enumerate() {
-                out[kinematics.block_of(row as u32) as usize] += map.transpose_apply(*force);
+            for (maps, force) in velocity_maps.iter().zip(&*row_inertia) {
+                maps.add_transposed(*force, out);
             }
         }
         for ((out, geometric), delta) in out.iter_mut().zip(&buffers.geometric).zip(delta) {
             *out += *geometric * *delta;
+        }
+        for (turn, amplitude, coupling) in &buffers.couplings {
+            let (turn, amplitude) = (*turn as usize, *amplitude as usize);
+            out[turn] += *coupling * delta[amplitude];
+            out[amplitude] += coupling.transpose_apply(delta[turn]);
         }
     }
 }

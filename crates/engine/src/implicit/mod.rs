@@ -18,7 +18,6 @@ use souple_solve::newton as iteration;
 use souple_solve::reduce::norm;
 
 use crate::force::{Scratch, TangentWeights};
-use crate::kinematics::UnknownKind;
 use crate::linear::{ByReference, Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
@@ -570,7 +569,7 @@ impl ImplicitStep<'_> {
         let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
         let Wanted { indefinite, used_as, tolerance, .. } = wanted;
         let asked = ByReference { indefinite, used_as, tolerance };
-        let part = if system.kinematics.has_rigid_frames() { Part::Symmetric } else { Part::Whole };
+        let part = if system.kinematics.has_turning_frames() { Part::Symmetric } else { Part::Whole };
         let products = TangentOperator::new(&at, part, scratches, operator);
         self.begin_at(wanted.from, v_start, direction);
         let solved = linear.solve_by_reference(&products, &asked, rhs, direction);
@@ -581,13 +580,13 @@ impl ImplicitStep<'_> {
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
     fn is_symmetric(&self) -> bool {
-        !self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+        !self.system.kinematics.has_turning_frames() && self.is_symmetric_over_rows()
     }
 
     /// Whether turning frames are all that makes the tangent not symmetric. About where they coast what they add is of the
     /// size of the turn in a step: one linearised step may leave it out, as it leaves out what else is of that order.
     fn turns_alone_break_symmetry(&self) -> bool {
-        self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+        self.system.kinematics.has_turning_frames() && self.is_symmetric_over_rows()
     }
 
     fn is_symmetric_over_rows(&self) -> bool {
@@ -736,13 +735,13 @@ impl ImplicitStep<'_> {
     fn coast_turns(&self, buffers: &mut ImplicitBuffers) -> bool {
         let kinematics = &self.system.kinematics;
         let ImplicitBuffers { coasting, velocity_offset, turns, v_trial, .. } = buffers;
-        if !(self.rates.has_inertia() && kinematics.has_rigid_frames()) {
+        if !(self.rates.has_inertia() && kinematics.has_turning_frames()) {
             turns.clear();
             return false;
         }
         turns.clear();
         turns.resize(coasting.len(), Vec3::ZERO);
-        for (_, blocks) in kinematics.unknowns().filter(|(kind, _)| *kind == UnknownKind::RigidFrame) {
+        for (_, blocks) in kinematics.unknowns().filter(|(kind, _)| kind.turns()) {
             let turn = blocks.start + 1;
             turns[turn] = (coasting[turn] - velocity_offset[turn]) * (1.0 / self.rates.velocity);
         }

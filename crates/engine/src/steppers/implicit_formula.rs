@@ -189,7 +189,7 @@ impl Step<'_> {
 
 /// Why a formula of two steps, which adds vectors of different configurations, cannot step this system.
 pub(super) fn refuse_rotations(name: &str, system: &System) -> Option<String> {
-    system.kinematics.has_rigid_frames().then(|| {
+    system.kinematics.has_turning_frames().then(|| {
         format!(
             "`{name}` adds displacements of earlier steps, which rigid frames do not have in common; take \
              `backward_euler` or an explicit stepper"

@@ -173,7 +173,8 @@ pub fn bind(draft: &Draft, body: &Placed, kinematics: &Kinematics) -> (Vec<Const
                         axes.map(|(block, axis)| led(block, axis, Arc::new(Turning(Arc::clone(&motion))))),
                     );
                 }
-                UnknownKind::Point => {}
+                // what `frames` never are
+                UnknownKind::Point | UnknownKind::FloatingFrame { .. } => {}
             }
             let reached = (body.rows.start as u32..).zip(&frames.carried_points);
             let reached = reached.filter(|(_, carried)| carried.frames.binary_search(&number).is_ok());

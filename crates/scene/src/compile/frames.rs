@@ -107,7 +107,8 @@ impl PlacedFrames {
                         v[block + 1 + k] = spin.cross(*axis);
                     }
                 }
-                UnknownKind::Point => {}
+                // what `frames` never are
+                UnknownKind::Point | UnknownKind::FloatingFrame { .. } => {}
             }
         }
     }
