@@ -12,5 +12,6 @@ pub mod materials;
 pub mod multiresolution;
 pub mod network;
 pub mod particles;
+pub mod reduced;
 pub mod solids;
 mod stays;

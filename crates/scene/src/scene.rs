@@ -1,6 +1,7 @@
 //! A scene ready to run, and how to come by one.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -81,6 +82,8 @@ pub struct BodyInfo {
     pub laws: LawsInfo,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
+    /// The natural modes that it moves in.
+    pub modes: Option<ModesInfo>,
     /// The surface that is shown in the place of its own.
     pub dress: Option<DressInfo>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
@@ -88,6 +91,15 @@ pub struct BodyInfo {
     pub radii: Vec<f64>,
     /// Where the objects of a network end.
     pub contours: Vec<ContourInfo>,
+}
+
+/// The natural modes that a body moves in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModesInfo {
+    /// Rows of the frame and of the modes, the frame's origin first.
+    pub rows: Range<usize>,
+    /// Natural frequency of each mode, rising [Hz].
+    pub hertz: Vec<f64>,
 }
 
 /// The laws of a body's cells.
@@ -312,10 +324,13 @@ impl BodyInfo {
         Some(census(world, self.system, &self.force)?.level_of_point)
     }
 
-    /// Rows that are moved to move it: origins of its frames, points of all its meshes, or its own.
+    /// Rows that are moved to move it: origins of its frames or of that of its modes, points of all its meshes, or its own.
     pub fn moving_rows(&self, world: &World) -> Vec<u32> {
         if let Some(frames) = &self.frames {
             return frames.rows.clone();
+        }
+        if let Some(modes) = &self.modes {
+            return vec![modes.rows.start as u32];
         }
         if let Some(own) = &self.own {
             return own.rows().collect();
@@ -325,11 +340,14 @@ impl BodyInfo {
         (rows.start as u32..rows.end as u32).collect()
     }
 
-    /// The row of the unknown that a point is; `None` where it hangs on another body or frames carry it.
+    /// The row of the unknown that a point is; `None` where it hangs on another body, or frames or modes carry it.
     pub fn own_row(&self, point: u32) -> Option<u32> {
         match &self.own {
             Some(own) => own.row_of(point),
-            None => self.frames.is_none().then_some(self.rows.start as u32 + point),
+            None => {
+                let is_carried = self.frames.is_some() || self.modes.is_some();
+                (!is_carried).then_some(self.rows.start as u32 + point)
+            }
         }
     }
 
@@ -350,7 +368,7 @@ impl BodyInfo {
     }
 
     pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
-        let Placed { spec, system, rows, mesh, frames, materials, hanging, .. } = placed;
+        let Placed { spec, system, rows, mesh, frames, modes, materials, hanging, .. } = placed;
         let laws = LawsInfo::new(spec, materials);
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
@@ -368,10 +386,28 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
+        let modes = modes.map(|modes| ModesInfo {
+            rows: modes.row_range(),
+            hertz: modes.eigenvalues().iter().map(|eigenvalue| eigenvalue.sqrt() / TAU).collect(),
+        });
         let name = spec.name.clone();
         let own = hanging.map(|hanging| hanging.own);
         let mesh = Arc::new(mesh);
-        Self { name, system, rows, own, mesh, surface, force, laws, frames, dress: None, radii, contours }
+        Self {
+            name,
+            system,
+            rows,
+            own,
+            mesh,
+            surface,
+            force,
+            laws,
+            frames,
+            modes,
+            dress: None,
+            radii,
+            contours,
+        }
     }
 }
 

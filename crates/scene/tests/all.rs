@@ -12,6 +12,7 @@ mod hanging;
 mod heat;
 mod liver;
 mod material_fields;
+mod modes;
 mod modules;
 mod mutations;
 mod networks;

@@ -79,6 +79,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("membrane", include_str!("../../../scenes/membrane/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("mixed_beam", include_str!("../../../scenes/mixed_beam/scene.toml")),
+    ("modal_cantilever", include_str!("../../../scenes/modal_cantilever/scene.toml")),
+    ("modal_spinning", include_str!("../../../scenes/modal_spinning/scene.toml")),
     ("moulded_figures", include_str!("../../../scenes/moulded_figures/scene.toml")),
     ("moulded_ground", include_str!("../../../scenes/moulded_ground/scene.toml")),
     ("network_collision", include_str!("../../../scenes/network_collision/scene.toml")),

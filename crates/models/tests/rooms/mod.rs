@@ -7,6 +7,7 @@
 mod edit;
 mod energy;
 mod field;
+mod floating_frame;
 mod forces;
 mod frame_and_tets;
 mod ghosts;

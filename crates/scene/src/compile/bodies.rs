@@ -18,10 +18,11 @@ use souple_models::solids::{
 use super::frames::PlacedFrames;
 use super::hanging::Hanging;
 use super::levels::PlacedLevels;
+use super::modes::PlacedModes;
 use super::network::PlacedLinks;
 use super::{
-    Draft, axes, frames, hanging, inertial, levels, material_fields, network, octree, section, shape, start,
-    tissue,
+    Draft, axes, frames, hanging, inertial, levels, material_fields, modes, network, octree, section, shape,
+    start, tissue,
 };
 use crate::diagnostic::{Code, Site};
 use crate::reader::Chosen;
@@ -43,6 +44,8 @@ pub struct Placed<'a> {
     pub links: Vec<PlacedLinks>,
     /// What carries it, where that is not its points.
     pub frames: Option<PlacedFrames>,
+    /// The natural modes that it moves in.
+    pub modes: Option<PlacedModes>,
     /// Coarser meshes of it.
     pub levels: Option<PlacedLevels<'a>>,
     /// What some of its points hang on.
@@ -50,9 +53,16 @@ pub struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    /// Rows that its mass is on: those of its frames, or its points.
+    /// Rows that its mass is on: those of its frames or of its modes, or its points.
     pub fn mass_rows(&self) -> Range<usize> {
-        self.frames.as_ref().map_or_else(|| self.rows.clone(), PlacedFrames::row_range)
+        let of_frames = self.frames.as_ref().map(PlacedFrames::row_range);
+        let of_modes = || self.modes.as_ref().map(PlacedModes::row_range);
+        of_frames.or_else(of_modes).unwrap_or_else(|| self.rows.clone())
+    }
+
+    /// Whether frames or modes carry its points, which are no unknowns then.
+    pub fn is_carried(&self) -> bool {
+        self.frames.is_some() || self.modes.is_some()
     }
 
     /// Its coarser meshes, each as if it were a body.
@@ -95,6 +105,7 @@ pub fn place(draft: &mut Draft) -> Option<()> {
     draft.bodies.sort_by_key(number);
     let is_complete = |body: &Placed| {
         body.spec.frames.is_some() == body.frames.is_some()
+            && body.spec.modes.is_some() == body.modes.is_some()
             && (body.spec.levels.is_some() || body.spec.octree.is_some()) == body.levels.is_some()
     };
     if draft.bodies.len() < spec.bodies.len()
@@ -136,6 +147,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         axes: Vec::new(),
         links,
         frames: None,
+        modes: None,
         levels: None,
         hanging: None,
     };
@@ -149,6 +161,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
         draft.warnings.extend(warnings);
     }
+    placed.modes = modes::place(draft, &placed);
     let mut warnings = Vec::new();
     placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings)
         .or_else(|| octree::place(draft, body, system, &placed.mesh));
@@ -156,7 +169,8 @@ fn place_one(draft: &mut Draft, index: usize) {
     draft.bodies.push(placed);
 }
 
-/// Rows of unknowns come first: points of meshes, then frames; points that frames carry follow, then those of bodies that hang.
+/// Rows of unknowns come first: points of meshes, then frames, then frames with modes; points that these carry follow, then those of
+/// bodies that hang.
 fn give_rows(bodies: &mut [Placed], systems: usize) {
     let mut next = vec![0; systems];
     let mut give = |system: usize, count: usize| {
@@ -164,7 +178,7 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
         next[system] += count;
         first..next[system]
     };
-    for body in bodies.iter_mut().filter(|body| body.frames.is_none()) {
+    for body in bodies.iter_mut().filter(|body| !body.is_carried()) {
         if let Some(hanging) = &mut body.hanging {
             let count = hanging.own.points().len();
             hanging.give_rows(give(body.system, count).start);
@@ -181,7 +195,15 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
             frames.give_rows(give(body.system, ROWS_OF_FRAME * frames.frames.len()).start);
         }
     }
+    for body in bodies.iter_mut() {
+        if let Some(modes) = &mut body.modes {
+            modes.give_rows(give(body.system, modes.kind().row_count()).start);
+        }
+    }
     for body in bodies.iter_mut().filter(|body| body.frames.is_some()) {
+        body.rows = give(body.system, body.mesh.points.len());
+    }
+    for body in bodies.iter_mut().filter(|body| body.modes.is_some()) {
         body.rows = give(body.system, body.mesh.points.len());
     }
     for system in 0..systems {
@@ -199,12 +221,20 @@ fn kinematics(draft: &Draft, index: usize) -> Kinematics {
         Some(hanging) => hanging.own.points().len(),
         None => body.point_count(),
     };
-    let points = bodies().filter(|body| body.frames.is_none()).map(unknowns).sum();
+    let points = bodies().filter(|body| !body.is_carried()).map(unknowns).sum();
     kinematics.add_unknowns(UnknownKind::Point, points);
     for frames in bodies().filter_map(|body| body.frames.as_ref()) {
         kinematics.add_unknowns(frames.kind, frames.frames.len());
     }
+    for modes in bodies().filter_map(|body| body.modes.as_ref()) {
+        kinematics.add_unknowns(modes.kind(), 1);
+    }
     bodies().filter_map(|body| body.frames.as_ref()).for_each(|frames| frames.add_points(&mut kinematics));
+    for body in bodies() {
+        if let Some(modes) = &body.modes {
+            modes.add_points(body.mesh.points.len(), &mut kinematics);
+        }
+    }
     for number in hanging::in_order(&draft.bodies, index) {
         hanging::add_rows(&draft.bodies, number, &mut kinematics);
     }
@@ -235,18 +265,17 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             forces.push(frames.force(body, spec));
             continue;
         }
-        match body.spec.mass {
-            MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
-            MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
-            MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
-            MassKind::Voronoi => {
-                if voronoi_mass(&body.mesh, body.rows.start, &density, &mut mass).is_none() {
-                    let message = "only cells of simplices are cut half way between points";
-                    let expected = "cells `tet4` or `tri3`, or `mass = \"lumped\"`";
-                    draft.log.add(Code::Conflict, &body.spec.site, message, expected);
-                }
+        if let Some(modes) = &body.modes {
+            let mut of_points = Mass::new(body.mesh.points.len());
+            add_point_mass(draft, body, 0, &mut of_points);
+            of_points.seal();
+            modes.add_mass(&of_points, &mut mass);
+            if let Err(error) = modes.forces(&modes::description(body, body.rows.start), body, &mut forces) {
+                report(draft, body.spec, &error.into());
             }
+            continue;
         }
+        add_point_mass(draft, body, body.rows.start, &mut mass);
         if body.spec.octree.is_some() {
             forces.extend(octree::force(draft, body));
             continue;
@@ -255,16 +284,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             forces.extend(levels::force(draft, body, coarser));
             continue;
         }
-        let description = SolidDescription {
-            name: solid_name(&body.spec.name),
-            mesh: &body.mesh,
-            first_row: body.rows.start,
-            materials: &materials.all,
-            material_of_cell: &materials.of_cell,
-            axes: &body.axes,
-            quadrature: body.spec.quadrature,
-            section,
-        };
+        let description = modes::description(body, body.rows.start);
         if let Err(error) = add_solid(body.spec, description, &mut forces) {
             report(draft, body.spec, &error);
         }
@@ -281,6 +301,24 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         stepper,
         steps_per_period: spec.steps_per_period,
     })
+}
+
+/// The mass of the points of a body, rows from `first_row` on.
+pub fn add_point_mass(draft: &Draft, body: &Placed, first_row: usize, mass: &mut Mass) {
+    let measure = body.spec.section().measure();
+    let density = |cell: usize| body.materials.of(cell).density * measure;
+    match body.spec.mass {
+        MassKind::Lumped => lumped_mass(&body.mesh, first_row, &density, mass),
+        MassKind::Consistent => consistent_mass(&body.mesh, first_row, &density, mass),
+        MassKind::Uniform => uniform_mass(&body.mesh, first_row, &density, mass),
+        MassKind::Voronoi => {
+            if voronoi_mass(&body.mesh, first_row, &density, mass).is_none() {
+                let message = "only cells of simplices are cut half way between points";
+                let expected = "cells `tet4` or `tri3`, or `mass = \"lumped\"`";
+                draft.log.add(Code::Conflict, &body.spec.site, message, expected);
+            }
+        }
+    }
 }
 
 /// The elastic force of a body and what damps its strain.
@@ -338,6 +376,7 @@ fn check_together(draft: &Draft, body: &Body) {
     };
     let carriers = [
         ("frames", body.frames.is_some()),
+        ("modes", body.modes.is_some()),
         ("levels", body.levels.is_some()),
         ("octree", body.octree.is_some()),
     ];
@@ -447,7 +486,7 @@ fn neighbour_friction(draft: &Draft, body: &Placed, mass: &Mass) -> Option<Neigh
         draft.log.add(Code::Conflict, &body.spec.site, message, expected);
         None
     };
-    if body.frames.is_some() || body.levels.is_some() || body.spec.network.is_some() {
+    if body.is_carried() || body.levels.is_some() || body.spec.network.is_some() {
         return refuse("`neighbour_friction` is of points that move by themselves", "a body of points alone");
     }
     let system = draft.spec.systems.get(body.system)?;
@@ -536,11 +575,14 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let mut q = vec![Vec3::ZERO; system.kinematics.free_row_count()];
     for body in bodies() {
-        match &body.frames {
-            Some(frames) => {
+        match (&body.frames, &body.modes) {
+            (Some(frames), _) => {
                 q[frames.row_range()].iter_mut().zip(frames.configuration()).for_each(|(q, row)| *q = row);
             }
-            None => {
+            (None, Some(modes)) => {
+                q[modes.row_range()].iter_mut().zip(modes.configuration()).for_each(|(q, row)| *q = row);
+            }
+            (None, None) => {
                 for (point, x) in (0..).zip(&body.mesh.points) {
                     if let Some(row) = body.own_row(point) {
                         q[row as usize] = *x;
@@ -561,12 +603,11 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
         if let Some(coarser) = &body.levels {
             levels::start(coarser, [velocity, angular_velocity, centre], &mut state.q, &mut state.v);
         }
-        match &body.frames {
-            Some(frames) => {
-                let motion = [velocity, angular_velocity, centre];
-                frames.start_velocity(&system.kinematics, motion, &mut state.v);
-            }
-            None => {
+        let motion = [velocity, angular_velocity, centre];
+        match (&body.frames, &body.modes) {
+            (Some(frames), _) => frames.start_velocity(&system.kinematics, motion, &mut state.v),
+            (None, Some(modes)) => modes.start_velocity(&system.kinematics, motion, &mut state.v),
+            (None, None) => {
                 for (point, x) in (0..).zip(points) {
                     if let Some(row) = body.own_row(point) {
                         state.v[row as usize] = velocity + angular_velocity.cross(*x - centre);

@@ -73,11 +73,11 @@ impl Hanging {
 }
 
 impl Placed<'_> {
-    /// The row of the unknown that a point is; `None` where it hangs or frames carry it.
+    /// The row of the unknown that a point is; `None` where it hangs, or frames or modes carry it.
     pub fn own_row(&self, point: u32) -> Option<u32> {
         match &self.hanging {
             Some(hanging) => hanging.own.row_of(point),
-            None => self.frames.is_none().then_some(self.rows.start as u32 + point),
+            None => (!self.is_carried()).then_some(self.rows.start as u32 + point),
         }
     }
 
@@ -92,10 +92,7 @@ impl Placed<'_> {
 
 /// Whether the points of a body may hang: they are its unknowns, and nothing else moves them.
 fn may_hang(body: &Placed) -> bool {
-    body.frames.is_none()
-        && body.levels.is_none()
-        && body.spec.network.is_none()
-        && body.mesh.cell_count() > 0
+    !body.is_carried() && body.levels.is_none() && body.spec.network.is_none() && body.mesh.cell_count() > 0
 }
 
 /// Whether points may hang on a body.
@@ -124,7 +121,7 @@ pub fn place(draft: &mut Draft) {
             continue;
         }
         // frames are held by springs where nothing is said: a row would stand in the matrix of all that reach it
-        if !is_asked && (to.frames.is_some() || link.has_spring()) {
+        if !is_asked && (to.is_carried() || link.has_spring()) {
             continue;
         }
         let number = |body: &Placed| draft.bodies.iter().position(|other| std::ptr::eq(other, body));

@@ -63,6 +63,7 @@ pub fn place<'a>(
         links: Vec::new(),
         frames: None,
         levels: None,
+        modes: None,
         hanging: None,
     };
     let mut placed = Vec::new();

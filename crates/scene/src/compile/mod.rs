@@ -17,6 +17,7 @@ mod levels;
 mod links;
 mod material_fields;
 mod memory;
+mod modes;
 mod motion;
 mod network;
 mod octree;

@@ -39,6 +39,7 @@ pub fn place<'a>(draft: &Draft, body: &'a Body, system: usize, mesh: &Mesh) -> O
             links: Vec::new(),
             frames: None,
             levels: None,
+            modes: None,
             hanging: None,
         }
     };

@@ -66,6 +66,12 @@ pub fn add(draft: &mut Draft) {
             joints.extend(hindered);
             continue;
         }
+        if let Some(modes) = &body.modes {
+            let of_modes = modes.constraints(&system.kinematics);
+            added.extend(of_modes.into_iter().map(|constraint| (body.system, constraint)));
+            joints.extend(joints_of(body, &holds));
+            continue;
+        }
         let asked =
             holds.iter().filter(|(_, hold)| hold.by.iter().any(Option::is_some)).map(|(point, _)| *point);
         if hanging::refuse_held(draft, body, asked) {
@@ -100,20 +106,29 @@ fn held_by_springs(
     body: &Placed,
     holds: BTreeMap<u32, Hold>,
 ) -> (Option<souple_models::frames::Hold>, Vec<Joint>) {
-    let mut joints = Vec::new();
+    let joints = joints_of(body, &holds);
     let mut held = Vec::new();
     for (point, Hold { by }) in holds {
         let axes = [0, 1, 2].map(|axis: usize| by[axis].is_some());
-        let ends = vec![(body.rows.start as u32 + point, 1.0)];
-        for axis in (0..3).filter(|axis| by[*axis].is_some()) {
-            let direction = Some(Vec3::AXES[axis]);
-            joints.push(Joint { system: body.system, ends: ends.clone(), direction });
-        }
         let motions = by.map(|led| led.and_then(|led| led.motion));
         let leads = motions.iter().any(Option::is_some);
         held.push((point, axes, leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>)));
     }
     (frames::hold(draft, body, held), joints)
+}
+
+/// What pins hinder of a body whose points are no unknowns.
+fn joints_of(body: &Placed, holds: &BTreeMap<u32, Hold>) -> Vec<Joint> {
+    let of_point = |(point, Hold { by }): (&u32, &Hold)| {
+        let row = body.rows.start as u32 + point;
+        let axes = [0, 1, 2].map(|axis: usize| by[axis].is_some().then_some(Vec3::AXES[axis]));
+        axes.into_iter().flatten().map(move |axis| Joint {
+            system: body.system,
+            ends: vec![(row, 1.0)],
+            direction: Some(axis),
+        })
+    };
+    holds.iter().flat_map(of_point).collect()
 }
 
 /// Pins whose points are elsewhere at the start than at rest, in words: what moves starts at rest all around them.

@@ -381,11 +381,15 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
     let reads_starts =
         matches!(probe.quantity.build.subject, Subject::Points(_) | Subject::Masses(MassesQuantity::Kept));
     let of_points: &[u32] = if reads_starts { &points } else { &[] };
-    let hangs = |other: &Placed| other.system == body.system && other.hanging.is_some();
+    let joins =
+        |other: &Placed| other.system == body.system && (other.hanging.is_some() || other.modes.is_some());
+    // pins of a body of modes hold its frame
+    let frame = body.modes.as_ref().filter(|_| is_held).map(|modes| modes.row_range().start as u32);
+    let held = frame.map_or_else(|| of_points.iter().map(own).collect(), |origin| vec![origin]);
     Some(Part {
         system: body.system,
-        held: of_points.iter().map(own).collect(),
-        hangs: draft.bodies.iter().any(hangs),
+        held,
+        hangs: draft.bodies.iter().any(joins),
         coarser: body.levels_of().filter(|_| is_held).flat_map(rows_in).collect(),
         rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
         starts: of_points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
@@ -400,12 +404,13 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
 fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
     let part = part(probe, draft)?;
     let body = draft.body(probe.body.as_deref()?)?;
-    if body.frames.is_none() {
+    if !body.is_carried() {
         return Some(part);
     }
     if let Some(region) = &probe.region {
+        let carriers = if body.modes.is_some() { "modes" } else { "frames" };
         let message =
-            format!("body `{}` is carried by frames, which hold its mass as a whole", body.spec.name);
+            format!("body `{}` is carried by {carriers}, which hold its mass as a whole", body.spec.name);
         draft.log.add(
             Code::Conflict,
             &region.site,

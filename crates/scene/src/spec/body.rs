@@ -12,6 +12,7 @@ use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
 use super::levels::{LEVELS, LevelsSpec};
 use super::mesh::{MESH, MeshSpec};
+use super::modes::{MODES, ModesSpec};
 use super::network::Network;
 use super::octree::{OCTREE, OctreeSpec};
 use super::region::{Region, direction};
@@ -138,6 +139,7 @@ pub(crate) static BODY: Keys = Keys::new(
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
+        Key::new("modes", Shape::Table(&MODES), "its natural modes carry it, in the place of its mesh"),
         Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
         Key::new(
             "octree",
@@ -211,6 +213,8 @@ pub struct Body {
     pub section: Option<Chosen<BuildSection>>,
     /// What carries it; the points of its mesh where left out.
     pub frames: Option<FramesSpec>,
+    /// Natural modes that it moves in.
+    pub modes: Option<ModesSpec>,
     /// Coarser meshes of it.
     pub levels: Option<LevelsSpec>,
     /// Its points as particles of several levels.
@@ -424,6 +428,7 @@ impl Body {
             material,
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
+            modes: reader.table("modes").map(|table| ModesSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             axes: reader.table("material_axes").and_then(|table| AxesSpec::read(&table)),

@@ -12,6 +12,7 @@ pub mod hand;
 pub mod interaction;
 pub mod levels;
 pub mod mesh;
+pub mod modes;
 pub mod network;
 pub mod octree;
 pub mod parts;

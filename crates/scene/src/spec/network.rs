@@ -445,6 +445,7 @@ impl Network {
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             frames: None,
+            modes: None,
             levels: None,
             octree: None,
             network: Some(network),

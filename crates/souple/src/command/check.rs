@@ -122,6 +122,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
         "texts": texts_of_table(&bodies).map(|(body, (name, law))| json!({ "body": body, "text": name, "law": law })).collect::<Vec<_>>(),
         "frames": frames_to_json(&bodies),
+        "modes": bodies.iter().filter_map(|body| Some((body.name.clone(), json!({ "hz": body.modes.as_ref()?.hertz })))).collect::<Map<_, _>>(),
         "frames_needed": needed.iter().map(|of| (of.body.clone(), of.to_json())).collect::<Map<_, _>>(),
         "probes": probes.len(),
         "steps": steps,
@@ -173,6 +174,15 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     for (network, costs) in networks.iter().zip(&network_costs) {
         print_network(network, costs);
+    }
+    for (name, modes) in bodies.iter().filter_map(|body| Some((&body.name, body.modes.as_ref()?))) {
+        let ends = [modes.hertz.first(), modes.hertz.last()].map(|hertz| hertz.copied().unwrap_or_default());
+        print_line(format_args!(
+            "  modes of {name}: {}, from {:.4} to {:.4} Hz",
+            modes.hertz.len(),
+            ends[0],
+            ends[1]
+        ));
     }
     for (name, of_body) in bodies.iter().filter_map(|body| Some((&body.name, body.frames.as_ref()?))) {
         let FramesReport { frames, points, reaching, effective, least_effective, .. } = of_body.report;

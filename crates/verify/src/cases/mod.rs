@@ -28,6 +28,7 @@ mod material_fields;
 mod material_tests;
 mod matter;
 mod mixed_models;
+mod modal;
 mod motion;
 mod moving_frame;
 mod network;
@@ -73,6 +74,7 @@ pub const TABLES: &[&[Case]] = &[
     elements::CASES,
     frequencies::CASES,
     motion::CASES,
+    modal::CASES,
     moving_frame::CASES,
     pressure::CASES,
     loads::CASES,

@@ -1,0 +1,301 @@
+//! Bodies of modes: the natural modes of a body of finite elements are found once, and its points become rows over a frame and amplitudes.
+
+use std::ops::Range;
+
+use souple_engine::modes::{Modes, ModesError, Settings, lowest};
+use souple_engine::{
+    Constraint, DerivedRow, Feedback, Force, Kinematics, Mass, Model, State, System, UnknownKind,
+};
+use souple_math::{Mat3, Vec3};
+use souple_models::materials::Material;
+use souple_models::reduced::{Coupling, ModalBasis, ModalDamping, ModalStiffness};
+use souple_models::solids::{FlatCell, Section, SolidDescription, SolidForce};
+
+use super::Draft;
+use super::bodies::{Placed, add_point_mass, solid_name};
+use crate::diagnostic::{Code, Site};
+use crate::spec::modes::ModesSpec;
+
+/// The modes of a body and the frame that they are seen from.
+pub struct PlacedModes {
+    basis: ModalBasis,
+    /// Row of the frame's origin.
+    first_row: usize,
+    /// Whether pins hold the frame.
+    is_held: bool,
+}
+
+/// Rigid motions of a body in space.
+const RIGID: usize = 6;
+/// `ω²` of what moves rigidly is rounding, below this part of that of the first mode that strains.
+const RIGID_PART: f64 = 1e-6;
+/// Where modes of free bodies are sought from, below zero, in squares of the time that a longitudinal wave takes across: thin bodies
+/// swing that slowly.
+const SHIFT: f64 = 1e-4;
+
+impl PlacedModes {
+    pub fn kind(&self) -> UnknownKind {
+        UnknownKind::FloatingFrame { modes: self.basis.mode_count() as u32 }
+    }
+
+    pub fn give_rows(&mut self, first: usize) {
+        self.first_row = first;
+    }
+
+    /// Rows of the frame and the modes, which have the body's mass.
+    pub fn row_range(&self) -> Range<usize> {
+        self.first_row..self.first_row + self.kind().row_count()
+    }
+
+    /// The configuration at rest, as rows.
+    pub fn configuration(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let frame = std::iter::once(self.basis.centre).chain(Vec3::AXES);
+        let rows = self.row_range().len();
+        frame.chain(std::iter::repeat(Vec3::ZERO)).take(rows)
+    }
+
+    /// `ω²` of each mode [1/s²].
+    pub fn eigenvalues(&self) -> &[f64] {
+        self.basis.eigenvalues()
+    }
+
+    /// Appends the points of the mesh to the rows.
+    pub fn add_points(&self, points: usize, kinematics: &mut Kinematics) {
+        for point in 0..points {
+            let weights = (self.first_row as u32..).zip(self.basis.weights(point));
+            let parents = weights.filter(|(_, weight)| *weight != 0.0).collect();
+            let row = DerivedRow { parents, feedback: Feedback::Transpose };
+            // weights are finite, and the frame comes before points
+            kinematics.add_derived_row(row).unwrap_or_else(|error| unreachable!("{error}"));
+        }
+    }
+
+    pub fn add_mass(&self, of_points: &Mass, mass: &mut Mass) {
+        let coupling = if self.is_held { Coupling::OfOneMode } else { Coupling::All };
+        self.basis.add_mass(of_points, coupling, self.first_row as u32, mass);
+    }
+
+    /// What resists the modes and what damps them.
+    ///
+    /// # Errors
+    /// A cell is flat or inverted at rest.
+    pub fn forces(
+        &self,
+        description: &SolidDescription,
+        body: &Placed,
+        forces: &mut Vec<Box<dyn Force>>,
+    ) -> Result<(), FlatCell> {
+        let (first, eigenvalues) = (self.first_row as u32, self.basis.eigenvalues());
+        forces.push(Box::new(ModalStiffness::new(description, first, eigenvalues)?));
+        let seconds = body.spec.damping.rayleigh_stiffness;
+        let ratio = body.spec.modes.as_ref().map_or(0.0, |modes| modes.damping_ratio);
+        if seconds > 0.0 || ratio > 0.0 {
+            let name = format!("{}.modal_damping", body.spec.name);
+            forces.push(Box::new(ModalDamping::new(name, first, eigenvalues, seconds, ratio)));
+        }
+        Ok(())
+    }
+
+    /// What holds the frame, and components of blocks that are amplitudes of no mode.
+    pub fn constraints(&self, kinematics: &Kinematics) -> Vec<Constraint> {
+        let block = kinematics.block_of(self.first_row as u32);
+        let mut constraints = Vec::new();
+        if self.is_held {
+            constraints.push(Constraint::pin(block, self.basis.centre));
+            constraints.push(Constraint::of_turn(block + 1, Mat3::IDENTITY, None));
+        }
+        let kind = self.kind();
+        for part in 0..kind.block_count() {
+            let idle = kind.idle_components(part);
+            if idle.contains(&true) {
+                constraints.push(Constraint::partial(
+                    block + part as u32,
+                    Vec3::ZERO,
+                    idle.map(|idle| !idle),
+                ));
+            }
+        }
+        constraints
+    }
+
+    /// Velocity blocks of a motion `v + ω × (x - c)` of the whole.
+    pub fn start_velocity(&self, kinematics: &Kinematics, motion: [Vec3; 3], v: &mut [Vec3]) {
+        let [velocity, spin, centre] = motion;
+        let block = kinematics.block_of(self.first_row as u32) as usize;
+        v[block] = velocity + spin.cross(self.basis.centre - centre);
+        v[block + 1] = spin;
+    }
+}
+
+/// Finds the modes of a body; `None` where that was refused.
+pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
+    let spec = body.spec.modes.as_ref()?;
+    if !is_alone(draft, body, spec) || body.materials.all.is_empty() {
+        return None;
+    }
+    let refuse = |message: String, expected: &str| {
+        draft.log.add(Code::Conflict, &spec.site, message, expected);
+    };
+    let (of_points, centre) = matter(draft, body)?;
+    let constraints = held(draft, body)?;
+    let is_held = !constraints.is_empty();
+    let Ok(elastic) = SolidForce::new(&description(body, 0)) else {
+        refuse(format!("body `{}` has flat cells, and no modes", body.spec.name), "cells with volume");
+        return None;
+    };
+    let modes = match modes_of(draft, body, spec, (of_points, elastic, constraints)) {
+        Ok(modes) => modes,
+        Err(error) => {
+            let name = &body.spec.name;
+            match error.available() {
+                Some(available) => {
+                    let most = available.saturating_sub(if is_held { 0 } else { RIGID });
+                    let message = format!("body `{name}` has {most} modes, not {}", spec.count);
+                    refuse(message, "a smaller `count`, or a finer mesh");
+                }
+                None => {
+                    let expected = "one body that hangs together, and pins that hold it as a whole or none";
+                    refuse(format!("no modes were found of body `{name}`: {error}"), expected);
+                }
+            }
+            return None;
+        }
+    };
+    let rigid = if is_held { 0 } else { RIGID };
+    let values = &modes.eigenvalues;
+    let first = values[rigid];
+    let is_rigid = |value: &f64| value.abs() <= RIGID_PART * first.abs();
+    if first <= 0.0 || values[..rigid].iter().any(|value| !is_rigid(value)) {
+        let message = format!(
+            "body `{}` has motions beside its rigid ones that nothing resists, or that go on by themselves: the first modes have ω² of {} /s²",
+            body.spec.name,
+            values[..=rigid].iter().map(|value| format!("{value:.1e}")).collect::<Vec<_>>().join(", ")
+        );
+        refuse(
+            message,
+            "one body that hangs together, with a law that resists at rest, and pins that hold it as a whole or none",
+        );
+        return None;
+    }
+    let eigenvalues = values[rigid..].to_vec();
+    let basis = ModalBasis::new(centre, &body.mesh.points, modes.shapes[rigid..].to_vec(), eigenvalues);
+    Some(PlacedModes { basis, first_row: 0, is_held })
+}
+
+/// Whether a body has nothing that modes know no way of; what it has is reported.
+fn is_alone(draft: &Draft, body: &Placed, spec: &ModesSpec) -> bool {
+    let own = body.spec;
+    let site = |site: Option<&Site>| site.unwrap_or(&spec.site).clone();
+    let others = [
+        ("frames", own.frames.is_some(), site(own.frames.as_ref().map(|of| &of.site))),
+        ("levels", own.levels.is_some(), site(None)),
+        ("octree", own.octree.is_some(), site(None)),
+        ("section", own.section() != Section::Solid, site(own.section.as_ref().map(|of| &of.site))),
+        ("adapt", own.adapt.is_some(), site(own.adapt.as_ref().map(|of| &of.site))),
+        ("formulation", own.formulation.is_some(), site(own.formulation.as_ref().map(|of| &of.site))),
+        ("start", own.start.is_some(), site(own.start.as_ref().map(|of| &of.site))),
+        ("damping.viscosity", own.damping.viscosity > 0.0, site(None)),
+        ("damping.neighbour_friction", own.damping.neighbour_friction > 0.0, site(None)),
+    ];
+    let mut is_alone = true;
+    for (key, _, site) in others.into_iter().filter(|(_, is_there, _)| *is_there) {
+        let message = format!("body `{}` moves as a sum of modes, which know no `{key}`", own.name);
+        draft.log.add(
+            Code::Conflict,
+            &site,
+            message,
+            "a body of volumes with its material and `modes` alone",
+        );
+        is_alone = false;
+    }
+    is_alone
+}
+
+/// The mass of the points of a body and its centre; `None` where there is none.
+fn matter(draft: &Draft, body: &Placed) -> Option<(Mass, Vec3)> {
+    let mut mass = Mass::new(body.mesh.points.len());
+    add_point_mass(draft, body, 0, &mut mass);
+    mass.seal();
+    let mut shares = mass.diagonal.clone();
+    for &(a, b, m) in &mass.couplings {
+        shares[a as usize] += m;
+        shares[b as usize] += m;
+    }
+    let total: f64 = shares.iter().sum();
+    let moment: Vec3 = body.mesh.points.iter().zip(&shares).map(|(x, m)| *x * *m).sum();
+    (total > 0.0).then(|| (mass, moment / total))
+}
+
+/// The points that pins hold, as modes see them; none of a body that is free. Pins that lead are reported.
+fn held(draft: &Draft, body: &Placed) -> Option<Vec<Constraint>> {
+    let mut axes_of_point = vec![[false; 3]; body.mesh.points.len()];
+    for pin in &body.spec.pins {
+        if pin.motion.is_some() || pin.rotation.is_some() || pin.bone.is_some() {
+            let message = format!("the modes of body `{}` are those of pins that stay", body.spec.name);
+            draft.log.add(
+                Code::Conflict,
+                &pin.site,
+                message,
+                "a pin without a motion, or a body without `modes`",
+            );
+            return None;
+        }
+        let Some(region) = &pin.region else { continue };
+        for point in draft.selector(body).points(region) {
+            let axes = &mut axes_of_point[point as usize];
+            (0..3).for_each(|axis| axes[axis] |= pin.axes[axis]);
+        }
+    }
+    let pinned = (0..).zip(axes_of_point).filter(|(_, axes)| axes.contains(&true));
+    let constraint = |(point, axes): (u32, [bool; 3])| {
+        Constraint::partial(point, body.mesh.points[point as usize], axes.map(|held| !held))
+    };
+    Some(pinned.map(constraint).collect())
+}
+
+/// The lowest modes of the body as a system of points, rigid ones first where it is free.
+fn modes_of(
+    draft: &Draft,
+    body: &Placed,
+    spec: &ModesSpec,
+    (mass, elastic, constraints): (Mass, SolidForce, Vec<Constraint>),
+) -> Result<Modes, ModesError> {
+    let is_held = !constraints.is_empty();
+    let points = body.mesh.points.clone();
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, points.len());
+    let system = System {
+        name: body.spec.name.clone(),
+        kinematics,
+        mass,
+        forces: vec![Box::new(elastic)],
+        constraints,
+        stepper: Box::new(souple_engine::steppers::SymplecticEuler),
+        steps_per_period: 1,
+    };
+    // c² / L² of the slowest material, c² = E / ρ
+    let waves = |material: &Material| material.small_strain.youngs_modulus() / material.density;
+    let slowest = body.materials.all.iter().map(waves).fold(f64::INFINITY, f64::min);
+    let shift = if is_held { 0.0 } else { -SHIFT * slowest / body.mesh.bounds().diagonal().powi(2) };
+    let count = spec.count + if is_held { 0 } else { RIGID };
+    let settings = Settings { count, shift, ..Settings::default() };
+    let state = State { systems: vec![system.initial_state(points)], ..State::default() };
+    let model = Model { period: draft.spec.world.period, systems: vec![system], ..Model::default() };
+    model
+        .start(state)
+        .with_system(0, |system, state, around, ws| lowest(system, state, around, ws, &settings))
+}
+
+/// The finite elements of a body whose points are rows from `first_row` on.
+pub fn description<'a>(body: &'a Placed, first_row: usize) -> SolidDescription<'a> {
+    SolidDescription {
+        name: solid_name(&body.spec.name),
+        mesh: &body.mesh,
+        first_row,
+        materials: &body.materials.all,
+        material_of_cell: &body.materials.of_cell,
+        axes: &body.axes,
+        quadrature: body.spec.quadrature,
+        section: body.spec.section(),
+    }
+}

@@ -1,0 +1,82 @@
+//! Bodies of modes in scenes (JIM-97, PA-19): what they answer, what implicit steps make of them, the same bits for any number of threads,
+//! and what is refused.
+
+use std::path::Path;
+
+use souple_engine::World;
+use souple_math::Vec3;
+use souple_scene::{Scene, read_text};
+
+fn read(name: &str, overrides: &[&str]) -> Result<Scene, String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    read_text(name, &text, &folder, &overrides).map_err(|errors| errors.to_string())
+}
+
+fn world(name: &str, overrides: &[&str]) -> World {
+    let scene = read(name, overrides).unwrap_or_else(|errors| panic!("{errors}"));
+    scene.model.start(scene.state)
+}
+
+/// A body knows its modes, its points are no unknowns, and it has the mass of its mesh.
+#[test]
+fn bodies_know_their_modes() {
+    let scene = read("modal_spinning", &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let body = &scene.bodies[0];
+    let modes = body.modes.as_ref().expect("modes");
+    assert_eq!(modes.hertz.len(), 6);
+    assert!(
+        modes.hertz.windows(2).all(|pair| pair[0] <= pair[1]) && modes.hertz[0] > 1.0,
+        "{:?}",
+        modes.hertz
+    );
+    assert!((0..body.mesh.points.len() as u32).all(|point| body.own_row(point).is_none()));
+    let mass = scene.model.systems[0].mass.diagonal[modes.rows.start];
+    // 0.5 · 0.1 · 0.1 m³ of 1000 kg/m³
+    assert!((mass - 5.0).abs() < 1e-12, "{mass}");
+}
+
+/// Implicit steps of a free body keep its momentum, whatever they take from its swinging, and its frame stays a rotation.
+#[test]
+fn implicit_steps_keep_momentum() {
+    let damped = "bodies.beam.modes={ count = 7, damping_ratio = 0.1 }";
+    let settings = ["systems.main.stepper=\"backward_euler\"", "world.period=\"10 ms\"", damped];
+    let mut world = world("modal_spinning", &settings);
+    (0..50).for_each(|_| world.step().expect("a step"));
+    let linear: Vec3 = world.with_system(0, |system, state, _, ws| {
+        system.place_rows(&state.q, &state.v, 0.0, &mut ws.rows);
+        system.momentum(&ws.rows).0
+    });
+    // residuals of 1e-6 of the forces of a step, of some newton for 10 ms, in 50 steps
+    assert!((linear - Vec3::new(0.5, 0.0, 0.0)).length() < 1e-6, "{linear:?}");
+    let q = &world.state().systems[0].q;
+    let axes = souple_math::Mat3::from_columns(q[1], q[2], q[3]);
+    assert!((axes.transpose_mul(&axes) - souple_math::Mat3::IDENTITY).largest_entry() < 1e-14);
+}
+
+/// What cannot be is said with what would be accepted.
+#[test]
+fn faults_of_modes_are_said_with_what_to_change() {
+    let told = |overrides: &[&str], words: &[&str]| {
+        let said = read("modal_cantilever", overrides).map(|_| ()).expect_err("a fault");
+        for word in words {
+            assert!(said.contains(word), "{word}: {said}");
+        }
+    };
+    told(&["bodies.beam.modes.count=0"], &["count"]);
+    let coarse = [
+        "bodies.beam.mesh.cells=[1, 1, 1]",
+        "bodies.beam.mesh.element=\"hex8\"",
+        "bodies.beam.modes.count=13",
+    ];
+    told(&coarse, &["has 12 modes, not 13", "a finer mesh"]);
+    let free = ["bodies.beam.pins=[]", coarse[0], coarse[1], "bodies.beam.modes.count=19"];
+    told(&free, &["has 18 modes, not 19"]);
+    let hinge = "bodies.beam.pins=[{ region = { nearest = [0, 0, 0] } }]";
+    told(&[hinge], &["pins that hold", "or none"]);
+    let led = "bodies.beam.pins=[{ region = \"x_min\", motion = { formula = [\"0.1*t\", \"0\", \"0\"] } }]";
+    told(&[led], &["those of pins that stay"]);
+    told(&["bodies.beam.damping.viscosity=1"], &["know no `damping.viscosity`"]);
+    told(&["bodies.beam.formulation.name=\"tensor_mass\""], &["know no `formulation`"]);
+}
