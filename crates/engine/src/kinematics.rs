@@ -1,10 +1,10 @@
 //! Three spaces: *unknowns* move, *rows* follow them linearly, *samples* read rows.
 //!
-//! An unknown is a point (3 velocities), a rigid frame (6), an affine frame (12) or a floating frame (6 and one for
-//! each of its modes). Its configuration is a run of [`Vec3`] *free rows*: a point is its position; a frame is its
+//! An unknown is a point (3 velocities), a rigid frame (6), an affine frame (12), a quadratic frame (30) or a floating
+//! frame (6 and one for each of its modes). Its configuration is a run of [`Vec3`] *free rows*: a point is its position; a frame is its
 //! origin and its three axes, so that a material point `x = Σ weight · row` and a deformation gradient
 //! `F = Σ row ⊗ gradient` are linear in rows whatever carries them. Its velocity is a run of *blocks* of three:
-//! 1, 2 (linear, angular), 4, or 2 and those of amplitudes, three to a block.
+//! 1, 2 (linear, angular), 4, 10, or 2 and those of amplitudes, three to a block.
 //!
 //! The rigid reduction happens here and nowhere else: axes `aₖ` turn with `ȧₖ = ω × aₖ`, forces come back as
 //! the torque `Σ aₖ × fₖ`. So does that of modes: of each amplitude `u` a floating frame has the three rows `bₖ = u aₖ`,
@@ -29,6 +29,8 @@ pub enum UnknownKind {
     Point,
     RigidFrame,
     AffineFrame,
+    /// An affine frame with the six rows of the products of its coordinates.
+    QuadraticFrame,
     /// A rigid frame and the amplitudes of shapes that turn with it.
     FloatingFrame {
         modes: u32,
@@ -37,6 +39,8 @@ pub enum UnknownKind {
 
 /// Rows of a frame that turns or stretches: its origin and its axes.
 const ROWS_OF_FRAME: usize = 4;
+/// Rows of a quadratic frame: a constant, three linear and six quadratic ones.
+const ROWS_OF_QUADRATIC: usize = 10;
 /// Blocks of a frame that turns: linear and angular.
 const BLOCKS_OF_RIGID: usize = 2;
 
@@ -46,6 +50,7 @@ impl UnknownKind {
         match self {
             Self::Point => 1,
             Self::RigidFrame | Self::AffineFrame => ROWS_OF_FRAME,
+            Self::QuadraticFrame => ROWS_OF_QUADRATIC,
             Self::FloatingFrame { modes } => ROWS_OF_FRAME + 3 * modes as usize,
         }
     }
@@ -55,7 +60,8 @@ impl UnknownKind {
         match self {
             Self::Point => 1,
             Self::RigidFrame => BLOCKS_OF_RIGID,
-            Self::AffineFrame => 4,
+            Self::AffineFrame => ROWS_OF_FRAME,
+            Self::QuadraticFrame => ROWS_OF_QUADRATIC,
             Self::FloatingFrame { modes } => BLOCKS_OF_RIGID + (modes as usize).div_ceil(3),
         }
     }
@@ -69,7 +75,7 @@ impl UnknownKind {
     fn mode_count(self) -> usize {
         match self {
             Self::FloatingFrame { modes } => modes as usize,
-            Self::Point | Self::RigidFrame | Self::AffineFrame => 0,
+            Self::Point | Self::RigidFrame | Self::AffineFrame | Self::QuadraticFrame => 0,
         }
     }
 
@@ -242,8 +248,9 @@ impl Kinematics {
                     self.carriers.push((block, Carrier::Translation));
                     self.carriers.extend([(block + 1, Carrier::Rotation); 3]);
                 }
-                UnknownKind::AffineFrame => {
-                    self.carriers.extend((0..4).map(|k| (block + k, Carrier::Translation)));
+                UnknownKind::AffineFrame | UnknownKind::QuadraticFrame => {
+                    let rows = 0..kind.row_count() as u32;
+                    self.carriers.extend(rows.map(|k| (block + k, Carrier::Translation)));
                 }
                 UnknownKind::FloatingFrame { modes } => {
                     let axes = self.carriers.len() as u32 + 1;
@@ -532,8 +539,8 @@ impl Kinematics {
                 let block = run.first_block + unknown * run.kind.block_count();
                 match run.kind {
                     UnknownKind::Point => q[row] += displacement[block] * scale,
-                    UnknownKind::AffineFrame => {
-                        for k in 0..4 {
+                    UnknownKind::AffineFrame | UnknownKind::QuadraticFrame => {
+                        for k in 0..run.kind.row_count() {
                             q[row + k] += displacement[block + k] * scale;
                         }
                     }
@@ -563,8 +570,8 @@ impl Kinematics {
                 let block = run.first_block + unknown * size;
                 match run.kind {
                     UnknownKind::Point => displacement[block] = to[row] - from[row],
-                    UnknownKind::AffineFrame => {
-                        for k in 0..4 {
+                    UnknownKind::AffineFrame | UnknownKind::QuadraticFrame => {
+                        for k in 0..size {
                             displacement[block + k] = to[row + k] - from[row + k];
                         }
                     }

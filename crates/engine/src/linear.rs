@@ -692,7 +692,9 @@ fn places(kinematics: &Kinematics, reference: &[f64]) -> (Vec<Vec3>, Option<Vec<
                 roles.push(BlockRole::Rotation);
                 roles.extend(blocks.skip(2).map(|_| BlockRole::Axis(Vec3::ZERO)));
             }
-            UnknownKind::AffineFrame => roles.extend((1..4).map(|axis| BlockRole::Axis(row(first + axis)))),
+            UnknownKind::AffineFrame | UnknownKind::QuadraticFrame => {
+                roles.extend((1..kind.row_count()).map(|axis| BlockRole::Axis(row(first + axis))));
+            }
         }
         first += kind.row_count();
     }

@@ -110,7 +110,7 @@ impl ReferenceFactor {
                 UnknownKind::RigidFrame | UnknownKind::FloatingFrame { .. } => {
                     axes(q, row).mul_transpose(&axes(reference, row))
                 }
-                UnknownKind::AffineFrame => {
+                UnknownKind::AffineFrame | UnknownKind::QuadraticFrame => {
                     polar(&axes(q, row).mul_transpose(&axes(reference, row))).rotation
                 }
             };

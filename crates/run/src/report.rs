@@ -246,6 +246,7 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
                 UnknownKind::Point => "points",
                 UnknownKind::RigidFrame => "rigid_frames",
                 UnknownKind::AffineFrame => "affine_frames",
+                UnknownKind::QuadraticFrame => "quadratic_frames",
                 UnknownKind::FloatingFrame { .. } => "floating_frames",
             };
             add(name, 1);

@@ -31,7 +31,7 @@ pub use ground::grounds;
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
 pub use scene::{
-    BodyInfo, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, ModesInfo, Scene, SkinInfo, read_again,
+    BodyInfo, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, ReducedInfo, Scene, SkinInfo, read_again,
     read_file, read_file_with_carriers, read_spec, read_text,
 };
 pub use schema::schema;

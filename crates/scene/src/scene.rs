@@ -82,8 +82,8 @@ pub struct BodyInfo {
     pub laws: LawsInfo,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
-    /// The natural modes that it moves in.
-    pub modes: Option<ModesInfo>,
+    /// The few unknowns that it moves in, where these are no points and no frames.
+    pub reduced: Option<ReducedInfo>,
     /// The surface that is shown in the place of its own.
     pub dress: Option<DressInfo>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
@@ -93,13 +93,13 @@ pub struct BodyInfo {
     pub contours: Vec<ContourInfo>,
 }
 
-/// The natural modes that a body moves in.
+/// The few unknowns that a body moves in.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ModesInfo {
-    /// Rows of the frame and of the modes, the frame's origin first.
+pub struct ReducedInfo {
+    /// Their rows, an origin first.
     pub rows: Range<usize>,
-    /// Natural frequency of each mode, rising [Hz].
-    pub hertz: Vec<f64>,
+    /// Of a body of modes: the natural frequency of each, rising [Hz].
+    pub hertz: Option<Vec<f64>>,
 }
 
 /// The laws of a body's cells.
@@ -134,6 +134,7 @@ impl LawsInfo {
         let BodyMaterials { all, of_cell } = materials;
         let keeps_texts = spec.levels.is_some()
             || spec.frames.is_some()
+            || spec.polynomial.is_some()
             || spec.formulation.as_ref().is_some_and(|formulation| keeps_texts(formulation.entry));
         let known = |name: &str, material: &Material| Some((name.to_owned(), material.text_runs_as()?));
         let of_seconds = seconds.iter().zip(&names).filter_map(|(law, name)| {
@@ -329,8 +330,8 @@ impl BodyInfo {
         if let Some(frames) = &self.frames {
             return frames.rows.clone();
         }
-        if let Some(modes) = &self.modes {
-            return vec![modes.rows.start as u32];
+        if let Some(reduced) = &self.reduced {
+            return vec![reduced.rows.start as u32];
         }
         if let Some(own) = &self.own {
             return own.rows().collect();
@@ -345,7 +346,7 @@ impl BodyInfo {
         match &self.own {
             Some(own) => own.row_of(point),
             None => {
-                let is_carried = self.frames.is_some() || self.modes.is_some();
+                let is_carried = self.frames.is_some() || self.reduced.is_some();
                 (!is_carried).then_some(self.rows.start as u32 + point)
             }
         }
@@ -368,7 +369,7 @@ impl BodyInfo {
     }
 
     pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
-        let Placed { spec, system, rows, mesh, frames, modes, materials, hanging, .. } = placed;
+        let Placed { spec, system, rows, mesh, frames, reduced, materials, hanging, .. } = placed;
         let laws = LawsInfo::new(spec, materials);
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
@@ -386,9 +387,9 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
-        let modes = modes.map(|modes| ModesInfo {
-            rows: modes.row_range(),
-            hertz: modes.eigenvalues().iter().map(|eigenvalue| eigenvalue.sqrt() / TAU).collect(),
+        let reduced = reduced.map(|reduced| {
+            let hertz = |eigenvalues: &[f64]| eigenvalues.iter().map(|square| square.sqrt() / TAU).collect();
+            ReducedInfo { rows: reduced.row_range(), hertz: reduced.eigenvalues().map(hertz) }
         });
         let name = spec.name.clone();
         let own = hanging.map(|hanging| hanging.own);
@@ -403,7 +404,7 @@ impl BodyInfo {
             force,
             laws,
             frames,
-            modes,
+            reduced,
             dress: None,
             radii,
             contours,

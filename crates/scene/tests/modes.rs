@@ -1,4 +1,4 @@
-//! Bodies of modes in scenes (JIM-97, PA-19): what they answer, what implicit steps make of them, the same bits for any number of threads,
+//! Bodies of modes and of polynomials in scenes (JIM-97, PA-19 and PA-20): what they answer, what implicit steps make of them, the same bits for any number of threads,
 //! and what is refused.
 
 use std::path::Path;
@@ -24,17 +24,37 @@ fn world(name: &str, overrides: &[&str]) -> World {
 fn bodies_know_their_modes() {
     let scene = read("modal_spinning", &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let body = &scene.bodies[0];
-    let modes = body.modes.as_ref().expect("modes");
-    assert_eq!(modes.hertz.len(), 6);
-    assert!(
-        modes.hertz.windows(2).all(|pair| pair[0] <= pair[1]) && modes.hertz[0] > 1.0,
-        "{:?}",
-        modes.hertz
-    );
+    let modes = body.reduced.as_ref().expect("few unknowns");
+    let hertz = modes.hertz.as_ref().expect("modes");
+    assert_eq!(hertz.len(), 6);
+    assert!(hertz.windows(2).all(|pair| pair[0] <= pair[1]) && hertz[0] > 1.0, "{hertz:?}");
     assert!((0..body.mesh.points.len() as u32).all(|point| body.own_row(point).is_none()));
     let mass = scene.model.systems[0].mass.diagonal[modes.rows.start];
     // 0.5 · 0.1 · 0.1 m³ of 1000 kg/m³
     assert!((mass - 5.0).abs() < 1e-12, "{mass}");
+}
+
+/// A body of a polynomial moves in the rows of its terms, the same under implicit steps, and a law as text is differentiated there as any.
+#[test]
+fn polynomials_step_by_all_laws() {
+    let text = r#"bodies.bar.material={ name = "hyperelastic", energy = "0.5*mu*(I1 - 3) - mu*log(J) + 0.5*k*log(J)^2", parameters = { mu = "20 kPa", k = "30 kPa" }, density = 1000 }"#;
+    for law in [r#"bodies.bar.material.name="neo_hookean""#, text] {
+        let settings = [
+            "systems.main.stepper={ name = \"backward_euler\", newton_iterations = 6 }",
+            "world.period=\"5 ms\"",
+            law,
+        ];
+        let mut world = world("polynomial_spinning", &settings);
+        assert_eq!(world.state().systems[0].q.len(), 10);
+        // quadratic convergence or none in six: the tangent is the derivative of the force
+        (0..20).for_each(|_| world.step().expect("a step"));
+    }
+    let said =
+        read("polynomial_bending", &["bodies.bar.damping.viscosity=1"]).map(|_| ()).expect_err("a fault");
+    assert!(said.contains("knows no such `damping.viscosity`"), "{said}");
+    let said =
+        read("polynomial_bending", &["bodies.bar.modes={ count = 3 }"]).map(|_| ()).expect_err("a fault");
+    assert!(said.contains("know no `polynomial`"), "{said}");
 }
 
 /// Implicit steps of a free body keep its momentum, whatever they take from its swinging, and its frame stays a rotation.

@@ -104,6 +104,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("plastic_kernel", include_str!("../../../scenes/plastic_kernel/scene.toml")),
     ("plastic_square", include_str!("../../../scenes/plastic_square/scene.toml")),
     ("plate", include_str!("../../../scenes/plate/scene.toml")),
+    ("polynomial_bending", include_str!("../../../scenes/polynomial_bending/scene.toml")),
+    ("polynomial_spinning", include_str!("../../../scenes/polynomial_spinning/scene.toml")),
     ("powder", include_str!("../../../scenes/powder/scene.toml")),
     ("pressed_block", include_str!("../../../scenes/pressed_block/scene.toml")),
     ("pressed_pad", include_str!("../../../scenes/pressed_pad/scene.toml")),

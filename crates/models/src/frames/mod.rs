@@ -32,7 +32,7 @@ pub use force::{FramesDescription, FramesForce, TangentKind};
 pub use hold::{HeldPoint, Hold, layer_stiffness};
 pub use mass::{check_inertia, consistent_mass, lumped_mass};
 pub use placement::{BuildPlacement, Matter, PLACEMENTS};
-pub use points::{BuildPoints, POINTS, Sample};
+pub use points::{BuildPoints, POINTS, Sample, samples_of_cells};
 pub use report::FramesReport;
 pub use unseen::{FramesAtRest, Unseen};
 pub use weights::{BuildWeights, Shape, Share, WEIGHTS, Weights, spacings};

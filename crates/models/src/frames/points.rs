@@ -53,8 +53,8 @@ pub static POINTS: Table<BuildPoints> = Table {
     ],
 };
 
-/// Samples of every cell by a rule of some degree, or by its default rule.
-fn samples_of_cells(mesh: &Mesh, degree: Option<usize>) -> Vec<Sample> {
+/// Samples of every cell by a rule of some degree, or by its default rule, cell after cell.
+pub fn samples_of_cells(mesh: &Mesh, degree: Option<usize>) -> Vec<Sample> {
     let mut samples = Vec::new();
     let mut buffer = [Vec3::ZERO; MAX_NODES];
     for (index, cell) in mesh.cells().enumerate() {

@@ -321,13 +321,19 @@ impl TextLaw {
 
     /// `Ψ(F)` [J/m³].
     pub fn energy_at(&self, F: &Mat3) -> f64 {
-        let [energy] = at(self.energy(), F);
+        let [energy] = at(self.energy(), F, None);
         energy
     }
 
     /// `P(F)`, which is no number where the energy is none [Pa].
     pub fn stress_at(&self, F: &Mat3) -> Mat3 {
-        let [a, b, c, d, e, f, g, h, i] = at(self.stress(), F);
+        let [a, b, c, d, e, f, g, h, i] = at(self.stress(), F, None);
+        Mat3::from_columns(Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i))
+    }
+
+    /// `∂P/∂F : δF` [Pa].
+    pub fn stress_differential_at(&self, F: &Mat3, dF: &Mat3) -> Mat3 {
+        let [a, b, c, d, e, f, g, h, i] = at(self.differential(), F, Some(dF));
         Mat3::from_columns(Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i))
     }
 
@@ -411,8 +417,8 @@ impl TextLaw {
     }
 }
 
-/// What a tape gives at one deformation, by columns.
-fn at<const N: usize>(tape: &Tape, F: &Mat3) -> [f64; N] {
+/// What a tape gives at one deformation, and of a differential at one change of it, by columns.
+fn at<const N: usize>(tape: &Tape, F: &Mat3, dF: Option<&Mat3>) -> [f64; N] {
     thread_local! {
         static MEMORY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
     }
@@ -423,6 +429,10 @@ fn at<const N: usize>(tape: &Tape, F: &Mat3) -> [f64; N] {
         tape.prepare(memory);
         for (entry, number) in F.columns.iter().flat_map(|column| column.to_array()).enumerate() {
             memory[tape.deformation(entry)] = number;
+        }
+        let numbers = dF.into_iter().flat_map(|dF| dF.columns).flat_map(|column| column.to_array());
+        for (entry, number) in numbers.enumerate() {
+            memory[tape.variation(entry)] = number;
         }
         tape.run_here(Part::All, 1, memory);
         std::array::from_fn(|entry| memory[tape.output(0, entry)])

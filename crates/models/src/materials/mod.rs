@@ -234,6 +234,22 @@ impl Material {
         }
     }
 
+    /// [`Law::stress_differential`] of this material at one `F` [Pa].
+    pub fn stress_differential(&self, F: &Mat3, dF: &Mat3) -> Mat3 {
+        struct Differential<'a>(&'a Material, [&'a Mat3; 2]);
+        impl LawVisitor for Differential<'_> {
+            type Output = Mat3;
+            fn visit<L: Law>(self, _: L) -> Mat3 {
+                let (parameters, [F, dF]) = (self.0.parameters_of::<L>(), self.1);
+                L::stress_differential(&parameters, &L::at(&parameters, F), dF)
+            }
+        }
+        match &self.law {
+            MaterialLaw::Known(law) => law.visit(Differential(self, [F, dF])),
+            MaterialLaw::Text(law) => law.stress_differential_at(F, dF),
+        }
+    }
+
     /// This material with its law's axes as the columns of a rotation; `None`: those of the world.
     pub fn along(&self, axes: Option<&Mat3>) -> Oriented<'_> {
         Oriented { material: self, axes: axes.copied() }
@@ -297,6 +313,12 @@ impl Oriented<'_> {
     pub fn stress(&self, F: &Mat3) -> Mat3 {
         let P = self.material.stress(&self.seen(F));
         self.axes.map_or(P, |Q| (Q * P).mul_transpose(&Q))
+    }
+
+    /// `∂P/∂F : δF` [Pa].
+    pub fn stress_differential(&self, F: &Mat3, dF: &Mat3) -> Mat3 {
+        let dP = self.material.stress_differential(&self.seen(F), &self.seen(dF));
+        self.axes.map_or(dP, |Q| (Q * dP).mul_transpose(&Q))
     }
 
     /// What is read off matter of `volume` [m³] at rest that is deformed by `F`.

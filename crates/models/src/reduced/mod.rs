@@ -1,5 +1,9 @@
-//! Bodies that move in few unknowns: `x = c + R (s + d)`, a floating frame and a deformation seen from it.
+//! Bodies that move in few unknowns.
 //!
+//! *Polynomials* are Witkin and Welch's (1990): `x = R Z(P)` with the terms `Z = (1, u, v, w)` or `(1, u, v, w, uv, uw, vw, u², v², w²)` of where
+//! matter rests and 12 or 30 numbers `R`, any law, strains of any size.
+//!
+//! *Modes* are a floating frame and a deformation seen from it, `x = c + R (s + d)`.
 //! The deformation is a sum of natural modes, `d = Σ u_i φ_i`, of a body of finite elements: Pentland and Williams's (1989), and in the
 //! frame of a body that turns that of flexible multibody dynamics. With `Kφ = ω² M φ` and `φ·Mφ = 1` each amplitude is an oscillator of its
 //! own, `ü + z u̇ + ω² u = f`, and what costs is the number of modes and not that of elements. Strains are small, whatever the turn: the law
@@ -11,11 +15,13 @@
 //! bent body has) is all in them.
 
 mod modal;
+mod polynomial;
 
 use souple_engine::Mass;
 use souple_math::Vec3;
 
 pub use modal::{ModalDamping, ModalStiffness};
+pub use polynomial::{Degree, Polynomial, PolynomialDescription, PolynomialForce};
 
 /// Rows of the frame itself: its origin and its axes. Those of the modes follow, three each.
 const ROWS_OF_FRAME: usize = 4;

@@ -15,6 +15,7 @@ mod implicit_formulas;
 mod interruption;
 mod material_axes;
 mod plastic_link;
+mod polynomial;
 mod stability;
 mod sticking_pair;
 mod two_rates;

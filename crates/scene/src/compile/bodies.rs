@@ -18,8 +18,8 @@ use souple_models::solids::{
 use super::frames::PlacedFrames;
 use super::hanging::Hanging;
 use super::levels::PlacedLevels;
-use super::modes::PlacedModes;
 use super::network::PlacedLinks;
+use super::reduced::{self, PlacedReduced};
 use super::{
     Draft, axes, frames, hanging, inertial, levels, material_fields, modes, network, octree, section, shape,
     start, tissue,
@@ -44,8 +44,8 @@ pub struct Placed<'a> {
     pub links: Vec<PlacedLinks>,
     /// What carries it, where that is not its points.
     pub frames: Option<PlacedFrames>,
-    /// The natural modes that it moves in.
-    pub modes: Option<PlacedModes>,
+    /// The few unknowns that it moves in, where these are no points and no frames.
+    pub reduced: Option<PlacedReduced>,
     /// Coarser meshes of it.
     pub levels: Option<PlacedLevels<'a>>,
     /// What some of its points hang on.
@@ -53,16 +53,25 @@ pub struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    /// Rows that its mass is on: those of its frames or of its modes, or its points.
+    /// Rows that its mass is on: those of its frames or few unknowns, or its points.
     pub fn mass_rows(&self) -> Range<usize> {
         let of_frames = self.frames.as_ref().map(PlacedFrames::row_range);
-        let of_modes = || self.modes.as_ref().map(PlacedModes::row_range);
-        of_frames.or_else(of_modes).unwrap_or_else(|| self.rows.clone())
+        let of_reduced = || self.reduced.as_ref().map(PlacedReduced::row_range);
+        of_frames.or_else(of_reduced).unwrap_or_else(|| self.rows.clone())
     }
 
-    /// Whether frames or modes carry its points, which are no unknowns then.
+    /// Whether frames or few other unknowns carry its points, which are no unknowns then.
     pub fn is_carried(&self) -> bool {
-        self.frames.is_some() || self.modes.is_some()
+        self.frames.is_some() || self.reduced.is_some()
+    }
+
+    /// Whether its pins hold points by springs; those of modes hold the frame.
+    pub fn is_held_by_springs(&self) -> bool {
+        self.is_carried() && !self.moves_in_modes()
+    }
+
+    pub fn moves_in_modes(&self) -> bool {
+        matches!(self.reduced, Some(PlacedReduced::Modes(_)))
     }
 
     /// Its coarser meshes, each as if it were a body.
@@ -105,7 +114,7 @@ pub fn place(draft: &mut Draft) -> Option<()> {
     draft.bodies.sort_by_key(number);
     let is_complete = |body: &Placed| {
         body.spec.frames.is_some() == body.frames.is_some()
-            && body.spec.modes.is_some() == body.modes.is_some()
+            && (body.spec.modes.is_some() || body.spec.polynomial.is_some()) == body.reduced.is_some()
             && (body.spec.levels.is_some() || body.spec.octree.is_some()) == body.levels.is_some()
     };
     if draft.bodies.len() < spec.bodies.len()
@@ -147,7 +156,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         axes: Vec::new(),
         links,
         frames: None,
-        modes: None,
+        reduced: None,
         levels: None,
         hanging: None,
     };
@@ -161,7 +170,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
         draft.warnings.extend(warnings);
     }
-    placed.modes = modes::place(draft, &placed);
+    placed.reduced = reduced::place(draft, &placed);
     let mut warnings = Vec::new();
     placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings)
         .or_else(|| octree::place(draft, body, system, &placed.mesh));
@@ -169,7 +178,7 @@ fn place_one(draft: &mut Draft, index: usize) {
     draft.bodies.push(placed);
 }
 
-/// Rows of unknowns come first: points of meshes, then frames, then frames with modes; points that these carry follow, then those of
+/// Rows of unknowns come first: points of meshes, then frames, then what other bodies move in; points that these carry follow, then those of
 /// bodies that hang.
 fn give_rows(bodies: &mut [Placed], systems: usize) {
     let mut next = vec![0; systems];
@@ -196,14 +205,14 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
         }
     }
     for body in bodies.iter_mut() {
-        if let Some(modes) = &mut body.modes {
-            modes.give_rows(give(body.system, modes.kind().row_count()).start);
+        if let Some(reduced) = &mut body.reduced {
+            reduced.give_rows(give(body.system, reduced.kind().row_count()).start);
         }
     }
     for body in bodies.iter_mut().filter(|body| body.frames.is_some()) {
         body.rows = give(body.system, body.mesh.points.len());
     }
-    for body in bodies.iter_mut().filter(|body| body.modes.is_some()) {
+    for body in bodies.iter_mut().filter(|body| body.reduced.is_some()) {
         body.rows = give(body.system, body.mesh.points.len());
     }
     for system in 0..systems {
@@ -226,13 +235,13 @@ fn kinematics(draft: &Draft, index: usize) -> Kinematics {
     for frames in bodies().filter_map(|body| body.frames.as_ref()) {
         kinematics.add_unknowns(frames.kind, frames.frames.len());
     }
-    for modes in bodies().filter_map(|body| body.modes.as_ref()) {
-        kinematics.add_unknowns(modes.kind(), 1);
+    for reduced in bodies().filter_map(|body| body.reduced.as_ref()) {
+        kinematics.add_unknowns(reduced.kind(), 1);
     }
     bodies().filter_map(|body| body.frames.as_ref()).for_each(|frames| frames.add_points(&mut kinematics));
     for body in bodies() {
-        if let Some(modes) = &body.modes {
-            modes.add_points(body.mesh.points.len(), &mut kinematics);
+        if let Some(reduced) = &body.reduced {
+            reduced.add_points(&body.mesh.points, &mut kinematics);
         }
     }
     for number in hanging::in_order(&draft.bodies, index) {
@@ -265,12 +274,8 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             forces.push(frames.force(body, spec));
             continue;
         }
-        if let Some(modes) = &body.modes {
-            let mut of_points = Mass::new(body.mesh.points.len());
-            add_point_mass(draft, body, 0, &mut of_points);
-            of_points.seal();
-            modes.add_mass(&of_points, &mut mass);
-            if let Err(error) = modes.forces(&modes::description(body, body.rows.start), body, &mut forces) {
+        if let Some(reduced) = &body.reduced {
+            if let Err(error) = reduced.add(draft, body, &mut mass, &mut forces) {
                 report(draft, body.spec, &error.into());
             }
             continue;
@@ -377,6 +382,7 @@ fn check_together(draft: &Draft, body: &Body) {
     let carriers = [
         ("frames", body.frames.is_some()),
         ("modes", body.modes.is_some()),
+        ("polynomial", body.polynomial.is_some()),
         ("levels", body.levels.is_some()),
         ("octree", body.octree.is_some()),
     ];
@@ -575,13 +581,11 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let mut q = vec![Vec3::ZERO; system.kinematics.free_row_count()];
     for body in bodies() {
-        match (&body.frames, &body.modes) {
+        match (&body.frames, &body.reduced) {
             (Some(frames), _) => {
                 q[frames.row_range()].iter_mut().zip(frames.configuration()).for_each(|(q, row)| *q = row);
             }
-            (None, Some(modes)) => {
-                q[modes.row_range()].iter_mut().zip(modes.configuration()).for_each(|(q, row)| *q = row);
-            }
+            (None, Some(reduced)) => reduced.rest_into(&mut q),
             (None, None) => {
                 for (point, x) in (0..).zip(&body.mesh.points) {
                     if let Some(row) = body.own_row(point) {
@@ -604,9 +608,9 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             levels::start(coarser, [velocity, angular_velocity, centre], &mut state.q, &mut state.v);
         }
         let motion = [velocity, angular_velocity, centre];
-        match (&body.frames, &body.modes) {
+        match (&body.frames, &body.reduced) {
             (Some(frames), _) => frames.start_velocity(&system.kinematics, motion, &mut state.v),
-            (None, Some(modes)) => modes.start_velocity(&system.kinematics, motion, &mut state.v),
+            (None, Some(reduced)) => reduced.start_velocity(&system.kinematics, motion, &mut state.v),
             (None, None) => {
                 for (point, x) in (0..).zip(points) {
                     if let Some(row) = body.own_row(point) {

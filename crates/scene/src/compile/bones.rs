@@ -174,7 +174,7 @@ pub fn bind(draft: &Draft, body: &Placed, kinematics: &Kinematics) -> (Vec<Const
                     );
                 }
                 // what `frames` never are
-                UnknownKind::Point | UnknownKind::FloatingFrame { .. } => {}
+                UnknownKind::Point | UnknownKind::QuadraticFrame | UnknownKind::FloatingFrame { .. } => {}
             }
             let reached = (body.rows.start as u32..).zip(&frames.carried_points);
             let reached = reached.filter(|(_, carried)| carried.frames.binary_search(&number).is_ok());

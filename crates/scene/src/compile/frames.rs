@@ -108,7 +108,7 @@ impl PlacedFrames {
                     }
                 }
                 // what `frames` never are
-                UnknownKind::Point | UnknownKind::FloatingFrame { .. } => {}
+                UnknownKind::Point | UnknownKind::QuadraticFrame | UnknownKind::FloatingFrame { .. } => {}
             }
         }
     }
@@ -301,7 +301,9 @@ pub type HeldAxes = (u32, [bool; 3], Option<Arc<dyn Motion>>);
 /// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it, over the area that
 /// the point has of the faces that are held.
 pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
-    let spec = body.spec.frames.as_ref().filter(|_| !held.is_empty())?;
+    if held.is_empty() {
+        return None;
+    }
     let numbers: Vec<u32> = held.iter().map(|(point, ..)| *point).collect();
     let (areas, moduli) = (links::areas_held(draft, body, &numbers), links::moduli(body));
     let depth = links::depth(body, numbers.iter().map(|point| areas[*point as usize]).sum());
@@ -311,7 +313,7 @@ pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
             "the matter of body `{}` has a modulus of {} Pa at pinned points: the springs that hold points of frames have no stiffness",
             body.spec.name, moduli[*point as usize]
         );
-        let site = body.spec.pins.first().map_or(&spec.site, |pin| &pin.site);
+        let site = body.spec.pins.first().map_or(&body.spec.site, |pin| &pin.site);
         draft.log.add(Code::OutOfRange, site, message, "a law that resists at rest, or no pins");
         return None;
     }

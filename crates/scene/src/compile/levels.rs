@@ -63,7 +63,7 @@ pub fn place<'a>(
         links: Vec::new(),
         frames: None,
         levels: None,
-        modes: None,
+        reduced: None,
         hanging: None,
     };
     let mut placed = Vec::new();

@@ -22,6 +22,8 @@ mod motion;
 mod network;
 mod octree;
 mod pins;
+mod polynomial;
+mod reduced;
 mod section;
 mod selection;
 mod shape;

@@ -188,6 +188,7 @@ fn is_alone(draft: &Draft, body: &Placed, spec: &ModesSpec) -> bool {
     let site = |site: Option<&Site>| site.unwrap_or(&spec.site).clone();
     let others = [
         ("frames", own.frames.is_some(), site(own.frames.as_ref().map(|of| &of.site))),
+        ("polynomial", own.polynomial.is_some(), site(own.polynomial.as_ref().map(|of| &of.site))),
         ("levels", own.levels.is_some(), site(None)),
         ("octree", own.octree.is_some(), site(None)),
         ("section", own.section() != Section::Solid, site(own.section.as_ref().map(|of| &of.site))),

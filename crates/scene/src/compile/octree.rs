@@ -39,7 +39,7 @@ pub fn place<'a>(draft: &Draft, body: &'a Body, system: usize, mesh: &Mesh) -> O
             links: Vec::new(),
             frames: None,
             levels: None,
-            modes: None,
+            reduced: None,
             hanging: None,
         }
     };

@@ -10,6 +10,7 @@ use souple_math::{Mat3, Vec3};
 use super::bodies::Placed;
 use super::freedom::Joint;
 use super::motion::{AxisMotions, motion_of_pin};
+use super::reduced::PlacedReduced;
 use super::{Draft, bones, frames, hanging};
 use crate::diagnostic::Code;
 use crate::spec::boundary::{MotionSpec, Pin};
@@ -57,7 +58,7 @@ pub fn add(draft: &mut Draft) {
         if system.stepper.has_inertia() {
             torn.extend(torn_at_start(draft, body, &holds));
         }
-        if body.frames.is_some() {
+        if body.is_held_by_springs() {
             let (force, held) = held_by_springs(draft, body, holds);
             holding.extend(force.map(|force| (body.system, force)));
             joints.extend(held);
@@ -66,7 +67,7 @@ pub fn add(draft: &mut Draft) {
             joints.extend(hindered);
             continue;
         }
-        if let Some(modes) = &body.modes {
+        if let Some(PlacedReduced::Modes(modes)) = &body.reduced {
             let of_modes = modes.constraints(&system.kinematics);
             added.extend(of_modes.into_iter().map(|constraint| (body.system, constraint)));
             joints.extend(joints_of(body, &holds));
@@ -100,7 +101,7 @@ pub fn add(draft: &mut Draft) {
     }
 }
 
-/// What holds the points of a body of frames, which are no unknowns: stiff springs along the pinned axes.
+/// What holds the points of a body of frames or of a polynomial, which are no unknowns: stiff springs along the pinned axes.
 fn held_by_springs(
     draft: &Draft,
     body: &Placed,

@@ -382,9 +382,9 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         matches!(probe.quantity.build.subject, Subject::Points(_) | Subject::Masses(MassesQuantity::Kept));
     let of_points: &[u32] = if reads_starts { &points } else { &[] };
     let joins =
-        |other: &Placed| other.system == body.system && (other.hanging.is_some() || other.modes.is_some());
+        |other: &Placed| other.system == body.system && (other.hanging.is_some() || other.reduced.is_some());
     // pins of a body of modes hold its frame
-    let frame = body.modes.as_ref().filter(|_| is_held).map(|modes| modes.row_range().start as u32);
+    let frame = (is_held && body.moves_in_modes()).then(|| body.mass_rows().start as u32);
     let held = frame.map_or_else(|| of_points.iter().map(own).collect(), |origin| vec![origin]);
     Some(Part {
         system: body.system,
@@ -396,7 +396,7 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         whole: body.mass_rows(),
         contact: probe.contact.clone(),
         about: probe.about,
-        hold: body.frames.is_some().then(|| hold_name(&body.spec.name)),
+        hold: body.is_held_by_springs().then(|| hold_name(&body.spec.name)),
     })
 }
 
@@ -408,9 +408,8 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
         return Some(part);
     }
     if let Some(region) = &probe.region {
-        let carriers = if body.modes.is_some() { "modes" } else { "frames" };
         let message =
-            format!("body `{}` is carried by {carriers}, which hold its mass as a whole", body.spec.name);
+            format!("body `{}` moves in few unknowns, which hold its mass as a whole", body.spec.name);
         draft.log.add(
             Code::Conflict,
             &region.site,
@@ -459,7 +458,7 @@ fn bone_part(probe: &Probe, draft: &Draft) -> Option<BonePart> {
         frames,
         pinned: body.levels_of().chain([body]).flat_map(|level| pinned_to(name, level, draft)).collect(),
         hangs: draft.bodies.iter().any(hangs),
-        hold: body.frames.is_some().then(|| hold_name(&body.spec.name)),
+        hold: body.is_held_by_springs().then(|| hold_name(&body.spec.name)),
         about: probe.about.unwrap_or(Vec3::ZERO),
     })
 }

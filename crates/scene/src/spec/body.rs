@@ -15,6 +15,7 @@ use super::mesh::{MESH, MeshSpec};
 use super::modes::{MODES, ModesSpec};
 use super::network::Network;
 use super::octree::{OCTREE, OctreeSpec};
+use super::polynomial::{POLYNOMIAL, PolynomialSpec};
 use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
@@ -140,6 +141,11 @@ pub(crate) static BODY: Keys = Keys::new(
         ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("modes", Shape::Table(&MODES), "its natural modes carry it, in the place of its mesh"),
+        Key::new(
+            "polynomial",
+            Shape::Table(&POLYNOMIAL),
+            "one polynomial carries it, in the place of its mesh",
+        ),
         Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
         Key::new(
             "octree",
@@ -215,6 +221,8 @@ pub struct Body {
     pub frames: Option<FramesSpec>,
     /// Natural modes that it moves in.
     pub modes: Option<ModesSpec>,
+    /// A polynomial that it moves as.
+    pub polynomial: Option<PolynomialSpec>,
     /// Coarser meshes of it.
     pub levels: Option<LevelsSpec>,
     /// Its points as particles of several levels.
@@ -429,6 +437,7 @@ impl Body {
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             modes: reader.table("modes").map(|table| ModesSpec::read(&table)),
+            polynomial: reader.table("polynomial").map(|table| PolynomialSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             axes: reader.table("material_axes").and_then(|table| AxesSpec::read(&table)),

@@ -17,6 +17,7 @@ pub mod network;
 pub mod octree;
 pub mod parts;
 pub mod picture;
+pub mod polynomial;
 pub mod probe;
 pub mod quantity;
 pub mod region;

@@ -446,6 +446,7 @@ impl Network {
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             frames: None,
             modes: None,
+            polynomial: None,
             levels: None,
             octree: None,
             network: Some(network),

@@ -122,7 +122,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
         "texts": texts_of_table(&bodies).map(|(body, (name, law))| json!({ "body": body, "text": name, "law": law })).collect::<Vec<_>>(),
         "frames": frames_to_json(&bodies),
-        "modes": bodies.iter().filter_map(|body| Some((body.name.clone(), json!({ "hz": body.modes.as_ref()?.hertz })))).collect::<Map<_, _>>(),
+        "modes": bodies.iter().filter_map(|body| Some((body.name.clone(), json!({ "hz": body.reduced.as_ref()?.hertz.as_ref()? })))).collect::<Map<_, _>>(),
         "frames_needed": needed.iter().map(|of| (of.body.clone(), of.to_json())).collect::<Map<_, _>>(),
         "probes": probes.len(),
         "steps": steps,
@@ -175,11 +175,13 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     for (network, costs) in networks.iter().zip(&network_costs) {
         print_network(network, costs);
     }
-    for (name, modes) in bodies.iter().filter_map(|body| Some((&body.name, body.modes.as_ref()?))) {
-        let ends = [modes.hertz.first(), modes.hertz.last()].map(|hertz| hertz.copied().unwrap_or_default());
+    for (name, modes) in
+        bodies.iter().filter_map(|body| Some((&body.name, body.reduced.as_ref()?.hertz.as_ref()?)))
+    {
+        let ends = [modes.first(), modes.last()].map(|hertz| hertz.copied().unwrap_or_default());
         print_line(format_args!(
             "  modes of {name}: {}, from {:.4} to {:.4} Hz",
-            modes.hertz.len(),
+            modes.len(),
             ends[0],
             ends[1]
         ));

@@ -36,6 +36,7 @@ mod octree;
 mod patch;
 mod plastic_bodies;
 mod point_cells;
+mod polynomial;
 mod pressure;
 mod resolution;
 mod rheology;
@@ -75,6 +76,7 @@ pub const TABLES: &[&[Case]] = &[
     frequencies::CASES,
     motion::CASES,
     modal::CASES,
+    polynomial::CASES,
     moving_frame::CASES,
     pressure::CASES,
     loads::CASES,

@@ -60,9 +60,9 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
     let mut damping = stiffness * DAMPING_TIME;
     if !matches!(system.stepper.stability(), Stability::Unconditional) {
         let timestep = system.stepper.interval(world.model().timestep(body.system));
-        let of_modes = body.modes.as_ref().map(|modes| modes.rows.start as u32);
-        let of_modes = of_modes.as_ref().map_or(rows, std::slice::from_ref);
-        let carriers = body.frames.as_ref().map_or(of_modes, |frames| &frames.rows);
+        let origin = body.reduced.as_ref().map(|reduced| reduced.rows.start as u32);
+        let of_origin = origin.as_ref().map_or(rows, std::slice::from_ref);
+        let carriers = body.frames.as_ref().map_or(of_origin, |frames| &frames.rows);
         let lightest = carriers.iter().map(|row| masses[*row as usize]).fold(f64::INFINITY, f64::min);
         // k/n < 0.1 m/h², c/n < 0.1 m/h: well within what the step bears
         let bearable = EXPLICIT_SHARE * lightest * rows.len() as f64 / timestep;
@@ -170,11 +170,11 @@ impl Touched {
     }
 }
 
-/// Rows that have the mass of a body: points that frames or modes carry have none of their own.
+/// Rows that have the mass of a body: points that frames or few other unknowns carry have none of their own.
 fn mass_rows(body: &BodyInfo) -> Vec<u32> {
-    match (&body.frames, &body.modes) {
+    match (&body.frames, &body.reduced) {
         (Some(frames), _) => frames.rows.clone(),
-        (None, Some(modes)) => vec![modes.rows.start as u32],
+        (None, Some(reduced)) => vec![reduced.rows.start as u32],
         (None, None) => (body.rows.start as u32..body.rows.end as u32).collect(),
     }
 }
@@ -332,9 +332,9 @@ pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> R
                 body.name
             ));
         }
-        Wish::Pin { .. } if body.modes.is_some() => {
+        Wish::Pin { .. } if body.reduced.is_some() => {
             return Err(format!(
-                "body `{}` moves as a sum of modes: its points cannot be pinned; hold them by a hand",
+                "body `{}` moves in few unknowns: its points cannot be pinned; hold them by a hand",
                 body.name
             ));
         }
