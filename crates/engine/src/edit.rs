@@ -5,6 +5,7 @@ use std::ops::Range;
 use souple_math::Vec3;
 
 use crate::constraint::Constraint;
+use crate::detection::Detected;
 use crate::force::{Force, ParameterError};
 use crate::hand::{Grip, GripError, Hand, check_place, hand_name};
 use crate::state::{State, SystemState};
@@ -218,6 +219,8 @@ fn take(
         return Err(EditError::Refused { system, stepper, why });
     }
     state.memory.extend(memory);
+    // of forces as they were
+    state.detected = Detected::default();
     if let Some(held) = held {
         release(system, state, held);
     }
@@ -228,6 +231,7 @@ fn take(
 fn release(system: &mut System, state: &mut SystemState, force: usize) {
     let range = system.memory_range(force);
     state.memory.drain(range);
+    state.detected = Detected::default();
     system.forces.remove(force);
     let number = force as u64;
     state.pairs.retain(|pair| pair.force != number);

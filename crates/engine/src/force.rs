@@ -337,6 +337,13 @@ pub trait Force: Send + Sync {
         false
     }
 
+    /// Brings its scratch to what [`Force::find_pairs`] left there at `searched`, of which velocities, pairs and what is kept are not
+    /// known any more: for pairs that were found elsewhere.
+    fn recall_search(&self, _searched: &Configuration, _scratch: &mut Scratch) {}
+
+    /// Brings the memory of a pair that was found one period ago, and was not known yet, to what it begins with now.
+    fn bring_up(&self, _now: &Configuration, _pair: &mut Pair) {}
+
     /// Stiffness that comes to act on rows when all that may touch does, `(row, [N/m])`: a bound from above by a diagonal
     /// matrix, which forecasts take in place of the tangent as it stands. `None`: the tangent tells all.
     fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {

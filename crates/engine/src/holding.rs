@@ -45,6 +45,9 @@ pub trait Holding: Send + Sync {
     /// Looks where a period begins which points it holds until the next one does.
     fn look(&self, at: &Configuration, scratch: &mut Scratch, memory: &mut [f64]);
 
+    /// Takes up in `memory` what a look one period ago told, in a memory of that time.
+    fn take_look(&self, looked: &[f64], memory: &mut [f64]);
+
     /// What each point of the surface has been told.
     fn visit_told(&self, memory: &[f64], visit: &mut dyn FnMut(&Told));
 

@@ -7,6 +7,7 @@ pub mod binding;
 pub mod constraint;
 mod control;
 pub mod coupling;
+mod detection;
 pub mod edit;
 pub mod force;
 mod frame_mass;
@@ -37,6 +38,7 @@ pub mod world;
 pub use binding::Binding;
 pub use constraint::{Constraint, Motion};
 pub use control::{CONTROL_LEN, Control};
+pub use detection::{Detected, Detection};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
     Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,

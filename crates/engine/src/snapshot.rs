@@ -2,16 +2,17 @@
 
 use souple_math::Vec3;
 
+use crate::detection::Detected;
 use crate::kept::Kept;
 use crate::state::{FieldMut, Pair};
 use crate::{FieldState, Model, State, System, SystemState};
 
-const MAGIC: &[u8; 8] = b"SOUPLE02";
+const MAGIC: &[u8; 8] = b"SOUPLE03";
 
 /// Bytes that are no snapshot, or not one of this model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SnapshotError {
-    #[error("this is no Souple snapshot: it starts with {found:02x?}, not with `SOUPLE02`")]
+    #[error("this is no Souple snapshot: it starts with {found:02x?}, not with `SOUPLE03`")]
     NotASnapshot { found: Vec<u8> },
     #[error("the snapshot is cut off: {needed} bytes are needed at offset {offset}, {available} are there")]
     CutOff { offset: usize, needed: u64, available: usize },
@@ -96,7 +97,8 @@ impl Model {
             differ(&format!("velocity blocks in system {index}"), state.v.len(), blocks)?;
             let memory = system.forces.iter().map(|force| force.memory_len()).sum();
             differ(&format!("numbers of memory in system {index}"), state.memory.len(), memory)?;
-            check_pairs(index, system, &state.pairs)?;
+            check_pairs(index, "pairs", system, &state.pairs)?;
+            check_detected(index, system, &state.detected)?;
             check_kept(index, system, &state.kept)?;
             if !system.stepper.accepts_history(system, &state.history) {
                 let (field, found) = (format!("systems[{index}].history"), state.history.len());
@@ -126,10 +128,10 @@ impl Model {
 }
 
 /// Pairs ascend, and each is one that its force could have found.
-fn check_pairs(index: usize, system: &System, pairs: &[Pair]) -> Result<(), SnapshotError> {
+fn check_pairs(index: usize, name: &str, system: &System, pairs: &[Pair]) -> Result<(), SnapshotError> {
     let unreadable = |at: usize, reader: String| {
         let Pair { force, a, b, .. } = pairs[at];
-        let field = format!("systems[{index}].pairs[{at}]");
+        let field = format!("systems[{index}].{name}[{at}]");
         SnapshotError::Unreadable { field, found: format!("pair ({force}, {a}, {b})"), reader }
     };
     if let Some(at) = pairs.windows(2).position(|pair| pair[0].key() >= pair[1].key()) {
@@ -142,6 +144,25 @@ fn check_pairs(index: usize, system: &System, pairs: &[Pair]) -> Result<(), Snap
             Some(force) => return Err(unreadable(at, format!("force `{}`", force.name()))),
             None => return Err(unreadable(at, format!("any of the {} forces", system.forces.len()))),
         }
+    }
+    Ok(())
+}
+
+/// There is as much of what was detected as there are rows and memories, or nothing.
+fn check_detected(index: usize, system: &System, detected: &Detected) -> Result<(), SnapshotError> {
+    let Detected { pairs, positions, numbers } = detected;
+    let differ = |what: &str, found: usize, expected: usize| {
+        let what = format!("{what} in system {index}");
+        let error = SnapshotError::OtherModel { what, found: found as u64, expected };
+        if found == expected { Ok(()) } else { Err(error) }
+    };
+    check_pairs(index, "detected.pairs", system, pairs)?;
+    if !positions.is_empty() {
+        differ("rows where it was detected", positions.len(), system.kinematics.row_count())?;
+    }
+    if !numbers.is_empty() || !positions.is_empty() {
+        let memory: usize = system.forces.iter().map(|force| force.memory_len()).sum();
+        differ("numbers of what was detected", numbers.len(), 1 + memory)?;
     }
     Ok(())
 }
@@ -236,6 +257,11 @@ mod tests {
             pairs: vec![Pair::new(1, 2, [0.5; 8])],
             kept: Kept { counts: vec![0, 2], keys: vec![3, 5], numbers: vec![0.5; 6] },
             history: vec![],
+            detected: Detected {
+                pairs: vec![Pair::new(1, 3, [0.25; 8])],
+                positions: vec![Vec3::Z],
+                numbers: vec![2.0, 0.1],
+            },
         };
         let fields = vec![FieldState { values: vec![1.0, 2.0], indices: vec![7] }];
         State { period: 9, systems: vec![system], driven: vec![3.0], fields, generators: vec![u64::MAX] }

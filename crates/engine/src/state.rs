@@ -5,6 +5,7 @@ use std::fmt;
 use souple_math::Vec3;
 use souple_solve::reduce;
 
+use crate::detection::Detected;
 use crate::kept::Kept;
 
 /// Two things that touch, with what the contact remembers (an anchor, a phase).
@@ -36,11 +37,7 @@ impl Pair {
 /// Merges the pairs found now into those remembered: a pair that is still there keeps its memory, a new one
 /// starts with the memory it was found with, one that is gone is forgotten. Sorted by `(force, a, b)`.
 pub fn merge_pairs(remembered: &mut Vec<Pair>, found: &mut Vec<Pair>) {
-    // most forces find them in order
-    if !found.is_sorted_by(|a, b| a.key() < b.key()) {
-        found.sort_unstable_by_key(Pair::key);
-        found.dedup_by_key(|pair| pair.key());
-    }
+    sort_pairs(found);
     let mut known = remembered.iter().peekable();
     for pair in found.iter_mut() {
         let key = pair.key();
@@ -50,6 +47,15 @@ pub fn merge_pairs(remembered: &mut Vec<Pair>, found: &mut Vec<Pair>) {
         }
     }
     std::mem::swap(remembered, found);
+}
+
+/// Brings pairs into the order of State, each once.
+pub(crate) fn sort_pairs(found: &mut Vec<Pair>) {
+    // most forces find them in order
+    if !found.is_sorted_by(|a, b| a.key() < b.key()) {
+        found.sort_unstable_by_key(Pair::key);
+        found.dedup_by_key(|pair| pair.key());
+    }
 }
 
 /// The pairs of one force among the sorted pairs of its system.
@@ -72,6 +78,8 @@ pub struct SystemState {
     pub kept: Kept,
     /// What the stepper carries from step to step (earlier configurations, warm starts, dates of factors).
     pub history: Vec<f64>,
+    /// What was detected beside the last period, for the next.
+    pub detected: Detected,
 }
 
 /// A field on a grid (a skin, a temperature): values and whatever integers describe its active set.
@@ -182,6 +190,12 @@ impl State {
                 (FieldName::System(index, "kept.keys"), FieldRef::Integers(&system.kept.keys)),
                 (FieldName::System(index, "kept.numbers"), FieldRef::Numbers(&system.kept.numbers)),
                 (FieldName::System(index, "history"), FieldRef::Numbers(&system.history)),
+                (FieldName::System(index, "detected.pairs"), FieldRef::Pairs(&system.detected.pairs)),
+                (
+                    FieldName::System(index, "detected.positions"),
+                    FieldRef::Vectors(&system.detected.positions),
+                ),
+                (FieldName::System(index, "detected.numbers"), FieldRef::Numbers(&system.detected.numbers)),
             ]
         });
         let fields = self.fields.iter().enumerate().flat_map(|(index, field)| {
@@ -215,6 +229,9 @@ impl State {
             all.push(FieldMut::Integers(&mut system.kept.keys));
             all.push(FieldMut::Numbers(&mut system.kept.numbers));
             all.push(FieldMut::Numbers(&mut system.history));
+            all.push(FieldMut::Pairs(&mut system.detected.pairs));
+            all.push(FieldMut::Vectors(&mut system.detected.positions));
+            all.push(FieldMut::Numbers(&mut system.detected.numbers));
         }
         all.push(FieldMut::Numbers(&mut self.driven));
         for field in &mut self.fields {
@@ -245,6 +262,7 @@ impl State {
             mine.pairs.clone_from(&other.pairs);
             mine.kept.copy_from(&other.kept);
             mine.history.clone_from(&other.history);
+            mine.detected.copy_from(&other.detected);
         }
         self.driven.clone_from(&other.driven);
         self.fields.resize_with(other.fields.len(), FieldState::default);
@@ -318,6 +336,7 @@ mod tests {
                 pairs: vec![Pair::default(); 2],
                 kept: Kept { counts: vec![1], keys: vec![5], numbers: vec![0.5] },
                 history: vec![0.0],
+                detected: Detected::default(),
             }],
             driven: vec![0.0; 2],
             fields: vec![FieldState { values: vec![0.0; 2], indices: vec![3] }],

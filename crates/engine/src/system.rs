@@ -62,8 +62,11 @@ pub struct SystemWorkspace {
     pub found_pairs: Vec<Pair>,
     /// Where a step in parts is taken back to.
     mark: Mark,
-    /// Rows at the last search of pairs; every step begins with one, so nothing of it outlives the step.
-    searched: Vec<Vec3>,
+    /// Rows at the last search of pairs. Every step begins with one, or every period with what was searched where that is in State, so
+    /// nothing of it outlives the period.
+    pub(crate) searched: Vec<Vec3>,
+    /// How often pairs were searched since the workspace was made.
+    pub(crate) searches: u64,
     /// Memories and pairs while they are moved on.
     before: SystemState,
     pub tangent: Tangent,
@@ -261,6 +264,7 @@ impl System {
             found_pairs: Vec::new(),
             mark: Mark::default(),
             searched: Vec::new(),
+            searches: 0,
             before: SystemState::default(),
             tangent: Tangent::default(),
             linear: LinearSolver::new(self.stepper.solver_settings()),
@@ -483,6 +487,7 @@ impl System {
         }
         merge_pairs(&mut state.pairs, &mut ws.found_pairs);
         ws.searched.clone_from(&ws.rows.positions);
+        ws.searches += 1;
     }
 
     /// [`System::update_pairs`] at the placed rows if those of the last search are stale there; whether they were.

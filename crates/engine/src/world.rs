@@ -8,12 +8,13 @@ use souple_math::Vec3;
 use crate::constraint::Constraint;
 use crate::control::Control;
 use crate::coupling::CouplingSpring;
+use crate::detection::{Detection, Detector};
 use crate::edit::{Command, Edit, EditError};
 use crate::force::{Configuration, Force, Scratch};
 use crate::hand::is_hand_name;
 use crate::interruption::Interruption;
 use crate::snapshot::SnapshotError;
-use crate::state::{FieldState, State};
+use crate::state::{FieldState, State, SystemState};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 use crate::timeline::Timeline;
@@ -105,6 +106,8 @@ pub struct Model {
     /// What drives parameters of forces, in this order.
     pub controls: Vec<Box<dyn Control>>,
     pub fields: Vec<Box<dyn Field>>,
+    /// When collisions are detected.
+    pub detection: Detection,
     /// What makes the tools that a hand may take; none where bodies can only be held.
     pub toolbox: Option<Arc<dyn Toolbox>>,
     /// Counts the edits that made this model from the first.
@@ -114,6 +117,8 @@ pub struct Model {
 /// Scratch of the world.
 pub struct Workspace {
     pub systems: Vec<SystemWorkspace>,
+    /// One for each system, where it detects anything beside its steps.
+    detectors: Vec<Option<Detector>>,
     /// One for each field.
     field_scratches: Vec<Scratch>,
     /// What their steps have taken [s].
@@ -134,6 +139,101 @@ pub struct World {
     /// All edits since the start, with the period each was made in.
     log: Vec<Command>,
     last_report: StepReport,
+}
+
+/// All steps of a system in a period.
+struct Steps<'a> {
+    system: &'a System,
+    around: Surroundings<'a>,
+    /// [s]
+    start: f64,
+    /// [s]
+    timestep: f64,
+    timeline: &'a Timeline,
+}
+
+impl Steps<'_> {
+    /// One after the other, each with its search of pairs.
+    fn run(&self, state: &mut SystemState, ws: &mut SystemWorkspace) -> Result<StepReport, WorldError> {
+        let Self { system, around, start, .. } = self;
+        if system.holds() {
+            self.search(ws, |ws| {
+                system.place_rows(&state.q, &state.v, *start, &mut ws.rows);
+                system.look(ws, state, around);
+                true
+            });
+        }
+        self.step_on(state, ws, |system, ws, state, around| {
+            system.update_pairs(ws, state, around);
+            true
+        })
+    }
+
+    /// The same while a detector looks at where the period begins: what it found in the period before does until it is stale.
+    fn beside(
+        &self,
+        detector: &mut Detector,
+        state: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, WorldError> {
+        let Self { system, around, start, timeline, .. } = self;
+        let clock = Instant::now();
+        system.place_rows(&state.q, &state.v, *start, &mut ws.rows);
+        detector.begin(system, ws, state, around);
+        ws.stages.pairs += clock.elapsed().as_secs_f64();
+        let report = detector.beside(system, around.fields, timeline, || {
+            let clock = Instant::now();
+            let stepped = self.step_on(state, ws, System::refresh_pairs);
+            timeline.note("steps", clock);
+            stepped
+        })?;
+        detector.end(ws, state);
+        Ok(report)
+    }
+
+    /// The steps, before each of which pairs are brought up to date, and whether by a search.
+    fn step_on(
+        &self,
+        state: &mut SystemState,
+        ws: &mut SystemWorkspace,
+        bring_up: impl Fn(&System, &mut SystemWorkspace, &mut SystemState, &Surroundings) -> bool,
+    ) -> Result<StepReport, WorldError> {
+        let Self { system, around, start, timestep, .. } = self;
+        let mut report = StepReport::default();
+        let (reads_rows, ends_steps) = (ws.rows_are_the_state, system.ends_steps());
+        for step in 0..system.steps_per_period {
+            ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
+            let time = start + f64::from(step) * timestep;
+            if system.has_pairs() {
+                self.search(ws, |ws| {
+                    system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+                    bring_up(system, ws, state, around)
+                });
+            }
+            ws.rows_are_the_state = reads_rows;
+            let step = Step { system, around, start: time, timestep: *timestep };
+            let stepped = system.stepper.step(&step, state, ws);
+            let place = || format!("system `{}`", system.name);
+            report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
+            if ends_steps {
+                if !reads_rows {
+                    system.place_rows(&state.q, &state.v, time + timestep, &mut ws.rows);
+                }
+                system.end_step(&ws.rows, state);
+            }
+        }
+        Ok(report)
+    }
+
+    /// What may look for what touches what in the midst of the steps, and says whether it did.
+    fn search(&self, ws: &mut SystemWorkspace, search: impl FnOnce(&mut SystemWorkspace) -> bool) {
+        let clock = Instant::now();
+        let has_looked = search(ws);
+        ws.stages.pairs += clock.elapsed().as_secs_f64();
+        if has_looked {
+            self.timeline.note("collisions", clock);
+        }
+    }
 }
 
 /// A step of the world that was refused; State is as it was.
@@ -169,6 +269,9 @@ impl Model {
     /// Starts a world at `state`, which was made for this model; one from a file goes through [`World::resume`].
     pub fn start(self, state: State) -> World {
         let systems = self.systems.iter().map(System::new_workspace).collect();
+        let is_late = self.detection == Detection::OnePeriodLate;
+        let detector = |system| if is_late { Detector::of(system) } else { None };
+        let detectors = self.systems.iter().map(detector).collect();
         let fast_end = |coupling: &CouplingSpring| {
             let (forces, name) = (&self.systems[coupling.fast_system].forces, coupling.fast_name());
             forces.iter().position(|force| force.name() == name)
@@ -177,6 +280,7 @@ impl Model {
         let field_scratches = self.fields.iter().map(|field| field.new_scratch()).collect();
         let workspace = Workspace {
             systems,
+            detectors,
             field_scratches,
             field_seconds: 0.0,
             next: state.clone(),
@@ -295,7 +399,13 @@ impl World {
         });
         let fields = self.model.fields.iter().zip(&self.workspace.field_scratches);
         let fields: usize = fields.map(|(field, scratch)| field.bytes(scratch)).sum();
-        systems.sum::<usize>() + fields + self.state.bytes() + self.workspace.next.bytes()
+        let detectors = self.model.systems.iter().zip(&self.workspace.detectors);
+        let detectors = detectors.filter_map(|(system, detector)| Some(detector.as_ref()?.bytes(system)));
+        systems.sum::<usize>()
+            + detectors.sum::<usize>()
+            + fields
+            + self.state.bytes()
+            + self.workspace.next.bytes()
     }
 
     /// Changes the world between steps, and keeps the command for replay.
@@ -354,6 +464,20 @@ impl World {
             let first_new = ws.scratches.len();
             ws.scratches.extend(system.forces[first_new..].iter().map(|force| force.new_scratch()));
         }
+        self.fit_detectors();
+    }
+
+    /// A detector for each system, by the forces as they are: an edit may give a system the first that detects anything.
+    fn fit_detectors(&mut self) {
+        if self.model.detection == Detection::EveryStep {
+            return;
+        }
+        for (system, detector) in self.model.systems.iter().zip(&mut self.workspace.detectors) {
+            match detector {
+                Some(detector) => detector.fit(system),
+                None => *detector = Detector::of(system),
+            }
+        }
     }
 
     /// From here on steps end without a result ([`StepError::Interrupted`]) while it is wished.
@@ -364,8 +488,8 @@ impl World {
         }
     }
 
-    /// From here on a timeline has its stages: each `step` with the looks for what touches what in it (`collisions`), and the steps of
-    /// fields, of which surfaces that are shown are some (`surface`).
+    /// From here on a timeline has its stages: each `step` with the looks for what touches what in it (`collisions`, on a thread of their
+    /// own where they are a period late), and the steps of fields, of which surfaces that are shown are some (`surface`).
     pub fn note_on(&mut self, timeline: &Timeline) {
         self.workspace.timeline = timeline.clone();
     }
@@ -474,56 +598,26 @@ impl World {
 
     /// All steps of one system in a period.
     fn step_system(&mut self, index: usize, start: f64, next: &mut State) -> Result<StepReport, WorldError> {
-        let mut report = StepReport::default();
         let system = &self.model.systems[index];
         let ws = &mut self.workspace.systems[index];
         let timestep = self.model.timestep(index);
         let (clock, before) = (Instant::now(), ws.stages.total());
-        let has_pairs = system.has_pairs();
-        let (reads_rows, ends_steps) = (ws.rows_are_the_state, system.ends_steps());
-        if system.holds() {
-            let clock = Instant::now();
-            let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
-            let state = &mut next.systems[index];
-            system.place_rows(&state.q, &state.v, start, &mut ws.rows);
-            system.look(ws, state, &around);
-            ws.stages.pairs += clock.elapsed().as_secs_f64();
-            self.workspace.timeline.note("collisions", clock);
-        }
-        for step in 0..system.steps_per_period {
-            ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
-            let time = start + f64::from(step) * timestep;
-            let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
-            let state = &mut next.systems[index];
-            if has_pairs {
-                let clock = Instant::now();
-                system.place_rows(&state.q, &state.v, time, &mut ws.rows);
-                system.update_pairs(ws, state, &around);
-                ws.stages.pairs += clock.elapsed().as_secs_f64();
-                self.workspace.timeline.note("collisions", clock);
-            }
-            ws.rows_are_the_state = reads_rows;
-            let stepped =
-                system.stepper.step(&Step { system, around: &around, start: time, timestep }, state, ws);
-            let place = || format!("system `{}`", system.name);
-            report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
-            if ends_steps {
-                if !reads_rows {
-                    system.place_rows(&state.q, &state.v, time + timestep, &mut ws.rows);
-                }
-                system.end_step(&ws.rows, state);
-            }
-        }
-        let state = &next.systems[index];
+        let reads_rows = ws.rows_are_the_state;
         // the very time that a resumed world has here, not `start + period`
         let end = (next.period + 1) as f64 * self.model.period;
+        let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
+        let state = &mut next.systems[index];
+        let steps = Steps { system, around, start, timestep, timeline: &self.workspace.timeline };
+        let report = match &mut self.workspace.detectors[index] {
+            Some(detector) => steps.beside(detector, state, ws),
+            None => steps.run(state, ws),
+        }?;
         if reads_rows {
             ws.rows.time = end;
         } else {
             system.place_rows(&state.q, &state.v, end, &mut ws.rows);
         }
         ws.rows_are_committed = true;
-        let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
         if let Some(error) = system.fault(&ws.rows, state, &around) {
             return Err(WorldError { place: format!("system `{}`", system.name), error });
         }

@@ -65,6 +65,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("joined_halves", include_str!("../../../scenes/joined_halves/scene.toml")),
     ("jointed_kernel", include_str!("../../../scenes/jointed_kernel/scene.toml")),
     ("kept_inside", include_str!("../../../scenes/kept_inside/scene.toml")),
+    ("late_collisions", include_str!("../../../scenes/late_collisions/scene.toml")),
     ("led_block", include_str!("../../../scenes/led_block/scene.toml")),
     ("led_kernel", include_str!("../../../scenes/led_kernel/scene.toml")),
     ("levels_cube", include_str!("../../../scenes/levels_cube/scene.toml")),

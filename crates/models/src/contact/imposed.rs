@@ -372,6 +372,16 @@ impl Holding for ImposedContact {
         }
     }
 
+    /// What points bear is what they bore last.
+    fn take_look(&self, looked: &[f64], memory: &mut [f64]) {
+        (memory[JUMP], memory[IS_MADE]) = (0.0, 0.0);
+        for number in 0..self.rows.len() {
+            let node = self.node(looked, number);
+            let force = if node.is_held { self.node(memory, number).force } else { Vec3::ZERO };
+            self.write_node(memory, number, &Node { force, ..node });
+        }
+    }
+
     fn visit_told(&self, memory: &[f64], visit: &mut dyn FnMut(&Told)) {
         for (row, Node { displacement, contact_area, area, is_held, .. }) in self.nodes(memory) {
             visit(&Told { row, displacement, contact_area, area, is_held });

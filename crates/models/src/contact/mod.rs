@@ -10,6 +10,8 @@ mod clip;
 mod imposed;
 #[cfg(test)]
 mod imposed_tests;
+#[cfg(test)]
+mod late_tests;
 pub mod law;
 mod leading;
 #[cfg(test)]

@@ -419,6 +419,16 @@ impl Force for SurfaceContact {
         rows().any(|row| (now[row] - searched[row] - common).length_sq() > limit_sq)
     }
 
+    /// The point may have been on another triangle, and goes on from there.
+    fn bring_up(&self, now: &Configuration, pair: &mut Pair) {
+        let place = self.place(pair);
+        let Corners { positions: [x, corners @ ..], .. } = Corners::at(place.rows, now);
+        pair.memory = match known_pair(pair, now) {
+            Some(known) => self.taken_along(known, now, corners),
+            None => anchored(barycentric(x, corners), Vec3::ZERO),
+        };
+    }
+
     // k g gᵀ with g = (1, -w) over point and corners is at most k |g_i| Σ|g_j| = 2 k |g_i| on the diagonal
     fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
         let mut bound = Vec::new();

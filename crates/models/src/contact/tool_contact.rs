@@ -114,7 +114,7 @@ struct Sight {
 const AT_CORE: f64 = 0.25;
 
 impl ToolContact {
-    /// `reach` [m] is about the length of an edge, `horizon` the time between searches [s].
+    /// `reach` [m] is about the length of an edge, `horizon` the time from one search to when the next one is of use [s].
     ///
     /// # Errors
     /// The shape has no parts, the surface no triangle of area, or a number does not fit.
@@ -470,6 +470,19 @@ impl Force for ToolContact {
         let share = (now.dot(way) / way.length_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         let moved = |row: &u32| (at.positions[*row as usize] - searched[*row as usize]).length_sq();
         (now - way * share).length_sq() > limit_sq || self.rows.iter().any(|row| moved(row) > limit_sq)
+    }
+
+    fn recall_search(&self, searched: &Configuration, scratch: &mut Scratch) {
+        let pose = self.pose(searched);
+        let Search { from, to, .. } = search(scratch);
+        (*from, *to) = (pose.origin, pose.origin + pose.velocity * self.horizon);
+    }
+
+    /// On which side it is was seen in time, where friction holds it is where it is now.
+    fn bring_up(&self, now: &Configuration, pair: &mut Pair) {
+        let known = Known::read(&pair.memory);
+        let anchor = middle(self.triangle(pair, &self.pose(now), now));
+        pair.memory = Known { anchor, ..known }.write();
     }
 
     // k n nᵀ shared by weights of sum one is at most k on each corner

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use souple_engine::{
-    Configuration, Force, Kinematics, Mass, Model, Pair, State, Stepper, System, TangentWeights, UnknownKind,
-    World,
+    Configuration, Detection, Force, Kinematics, Mass, Model, Pair, State, Stepper, System, TangentWeights,
+    UnknownKind, World,
 };
 use souple_math::Vec3;
 use souple_solve::{BlockMatrix, PatternBuilder};
@@ -190,6 +190,19 @@ pub(crate) fn world(
     stepper: Box<dyn Stepper>,
     period: f64,
 ) -> World {
+    world_of(Detection::EveryStep, positions, velocities, masses, forces, stepper, period)
+}
+
+/// The same with collisions detected so.
+pub(crate) fn world_of(
+    detection: Detection,
+    positions: &[Vec3],
+    velocities: &[Vec3],
+    masses: &[f64],
+    forces: Vec<Box<dyn Force>>,
+    stepper: Box<dyn Stepper>,
+    period: f64,
+) -> World {
     let mut kinematics = Kinematics::default();
     kinematics.add_unknowns(UnknownKind::Point, positions.len());
     let mut mass = Mass::new(positions.len());
@@ -206,7 +219,7 @@ pub(crate) fn world(
     let mut start = system.initial_state(positions.to_vec());
     start.v.copy_from_slice(velocities);
     let state = State { systems: vec![start], ..State::default() };
-    Model { period, systems: vec![system], ..Model::default() }.start(state)
+    Model { period, detection, systems: vec![system], ..Model::default() }.start(state)
 }
 
 pub(crate) fn stepper(name: &str) -> Box<dyn Stepper> {

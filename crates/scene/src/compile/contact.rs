@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_engine::{Felt, Force};
+use souple_engine::{Detection, Felt, Force};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_models::contact::shape::{BuildShape, ShapeError};
@@ -325,7 +325,12 @@ pub(super) fn tool_surface(
         return refuse(message, "a larger region");
     }
     let system = draft.spec.systems.get(body.system)?;
-    let horizon = draft.spec.world.period / f64::from(system.steps_per_period);
+    let period = draft.spec.world.period;
+    let horizon = match draft.spec.world.detection {
+        Detection::EveryStep => period / f64::from(system.steps_per_period),
+        // what is seen where one period begins is used until the next one ends
+        Detection::OnePeriodLate => 2.0 * period,
+    };
     let reach = surface.mean_edge();
     Some(Some((ToolSurface { surface, rows }, [reach, horizon])))
 }

@@ -1,7 +1,7 @@
 //! What is no fault but hardly meant: magnitudes that look like a slip of units, materials that lock.
 
-use souple_engine::System;
 use souple_engine::linear::Method;
+use souple_engine::{Detection, System};
 use souple_mesh::USUAL_SIZES;
 use souple_mesh::repair::diagnose;
 use souple_models::materials::{Build, Material};
@@ -26,6 +26,18 @@ const SIZES: [f64; 2] = [1e-5, 500.0];
 /// `λ/μ` beyond which elements with linear shape functions are markedly too stiff: they have fewer freedoms than
 /// their cells have volumes to keep. `ν = 0.475` gives 19 (Hughes 2000, §4.2).
 const LOCKING: f64 = 19.0;
+
+/// Warns of a scene that asks for late detection of collisions, and has none to detect.
+pub fn warn_of_detection(draft: &mut Draft) {
+    let world = &draft.spec.world;
+    let detects = |system: &System| system.has_pairs() || system.holds();
+    if world.detection == Detection::OnePeriodLate && !draft.systems.iter().any(detects) {
+        let place = draft.place(&world.detection_site);
+        draft.warnings.push(format!(
+            "{place}: nothing is detected here beside the steps: points of bodies feel shapes in every step; `detect = \"triangles\"` and contacts between bodies have something to look for"
+        ));
+    }
+}
 
 /// Adds warnings on all bodies.
 pub fn warn(draft: &mut Draft) {

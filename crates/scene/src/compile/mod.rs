@@ -111,6 +111,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         systems: Vec::new(),
         model: Model {
             period: spec.world.period,
+            detection: spec.world.detection,
             toolbox: Some(Arc::new(HandTools { period: spec.world.period })),
             ..Model::default()
         },
@@ -153,6 +154,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     doubts::warn(&mut draft);
     levels::warn_of_budgets(&mut draft);
     imposing::warn(&mut draft);
+    doubts::warn_of_detection(&mut draft);
     freedom::check(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();

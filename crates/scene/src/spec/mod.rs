@@ -29,6 +29,7 @@ pub mod units;
 pub mod view;
 pub mod world;
 
+use souple_engine::Detection;
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_table::{Range, readable};
@@ -203,6 +204,8 @@ impl Spec {
                 period_site: site.clone(),
                 gravity: None,
                 gravity_site: site.clone(),
+                detection: Detection::default(),
+                detection_site: site.clone(),
                 frame: None,
                 site,
             },

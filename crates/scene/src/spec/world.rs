@@ -1,5 +1,6 @@
 //! The world, its systems, and what a run does by default.
 
+use souple_engine::Detection;
 use souple_engine::steppers::{self, BuildStepper};
 use souple_formal::Formula;
 use souple_math::Vec3;
@@ -33,9 +34,17 @@ pub(crate) static WORLD: Keys = Keys::new(
             "acceleration of everything that has mass: numbers, or formulas of time; none where left out",
         )
         .in_unit("m/s^2"),
+        Key::new(
+            "collisions",
+            Shape::Choice(&COLLISIONS),
+            "when collisions are detected: by every step, which waits for it, or beside the steps of a period, on a thread of its own, for the next one",
+        )
+        .or(Value::Text(COLLISIONS[0])),
         Key::new("frame", Shape::Table(&FRAME), "a moving frame that all of the scene is seen from"),
     ],
 );
+
+const COLLISIONS: [&str; 2] = ["every_step", "one_period_late"];
 
 pub(crate) static FRAME: Keys = Keys::new(
     "frame",
@@ -103,6 +112,8 @@ pub struct WorldSpec {
     /// Of the time; `None`: there is none [m/s²].
     pub gravity: Option<[Formula; 3]>,
     pub gravity_site: Site,
+    pub detection: Detection,
+    pub detection_site: Site,
     /// How the frame moves that everything is seen from; `None`: it is at rest.
     pub frame: Option<FrameSpec>,
     pub site: Site,
@@ -158,6 +169,11 @@ impl WorldSpec {
             period_site: reader.site_of("period"),
             gravity: reader.maybe_vector_formula("gravity"),
             gravity_site: reader.site_of("gravity"),
+            detection: match reader.choice("collisions") {
+                late if late == COLLISIONS[1] => Detection::OnePeriodLate,
+                _ => Detection::EveryStep,
+            },
+            detection_site: reader.site_of("collisions"),
             frame: reader.table("frame").map(|frame| FrameSpec::read(&frame)),
             site: reader.site(),
         }

@@ -21,6 +21,7 @@ mod frequencies;
 mod hands;
 mod heat;
 mod implicit;
+mod late;
 mod levels;
 mod loads;
 mod long_beam;
@@ -135,6 +136,7 @@ pub const TABLES: &[&[Case]] = &[
     levels::CASES,
     point_cells::CASES,
     hands::CASES,
+    late::CASES,
     tools::CASES,
     skins::CASES,
 ];

@@ -62,3 +62,46 @@ fn pictures_are_made_beside_steps() {
     page.wish(json!({"do": "pause"}));
     world.assert_replayed();
 }
+
+/// A ball that presses a block, whose triangles are looked for beside its steps.
+const PRESSED: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    collisions = "one_period_late"
+    [systems.main]
+    stepper = "symplectic_euler"
+    steps_per_period = 40
+    [bodies.block]
+    mesh = { generate = "box", size = [0.1, 0.1, 0.1], cells = [12, 12, 12], element = "tet4" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "10 kPa", poissons_ratio = 0.3, density = 1000 }
+    [[bodies.block.pins]]
+    region = "z_min"
+    [shapes.ball]
+    shape = { name = "sphere", centre = [0.05, 0.05, 0.119], radius = 0.02 }
+    [[contacts]]
+    body = "block"
+    shape = "ball"
+    detect = "triangles"
+"#;
+
+/// Collisions are detected on a thread of their own while the world's makes its steps; what was stepped replays bit for bit.
+#[test]
+fn collisions_are_detected_beside_steps() {
+    let timeline = Timeline::begin();
+    let world = World::noted_on(PRESSED, &timeline);
+    let mut page = Page::open(&world);
+    let clock = Instant::now();
+    loop {
+        page.frame();
+        let (spans, threads) = (timeline.spans(), timeline.threads());
+        let of = |name: &'static str| spans.iter().filter(move |span| span.name == name);
+        assert!(of("collisions").all(|look| threads[look.thread] == "collisions"));
+        if of("collisions").any(|look| of("steps").any(|steps| overlap(look, steps))) {
+            break;
+        }
+        assert!(clock.elapsed() < Duration::from_secs(60), "{} looks", of("collisions").count());
+    }
+    page.wish(json!({"do": "pause"}));
+    world.assert_replayed();
+}
