@@ -154,6 +154,26 @@ fn affine_motions_divide_nothing() {
     assert_eq!(body.adapt().active, [8, 0, 0]);
 }
 
+/// A row of single particles is divided where it turns, which it cannot tell from what bends; its daughters tell it, and are not. Straight
+/// again, they are grouped.
+#[test]
+fn rows_divide_where_they_turn() {
+    let choice = OctreeChoice::Adaptive { refine: 0.02, coarsen: 0.01 };
+    let tree = tree([16, 4, 4], 3);
+    let mut body = Body::new(force(tree, OctreeOperators::Energy, Variant::Adaptive, choice));
+    assert_eq!(body.adapt().active, [4, 0, 0]);
+    let turned = |body: &mut Body, slope: f64| {
+        body.rows.positions.iter_mut().for_each(|x| x.y += slope * x.x);
+        body.adapt();
+        body.adapt().active
+    };
+    // 2/3 n² of it, in a row of four: just below, and above
+    assert_eq!(turned(&mut body, 0.99 * 0.02 / (2.0 / 3.0 * 16.0)), [4, 0, 0]);
+    assert_eq!(turned(&mut body, 0.02), [0, 32, 0]);
+    let straight = -0.99 * 0.02 / (2.0 / 3.0 * 16.0) - 0.02;
+    assert_eq!(turned(&mut body, straight), [4, 0, 0]);
+}
+
 /// The energy's force has no sum, across levels too; it is minus its gradient.
 #[test]
 fn energies_keep_momentum_across_levels() {

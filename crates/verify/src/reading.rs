@@ -84,7 +84,9 @@ pub enum Statistic {
     Max,
     /// The greatest less the least.
     Span,
-    /// The same from so many world periods on, of the course in `probes.csv`.
+    /// Over all periods but the start, of the course in `probes.csv`.
+    Mean,
+    /// The span from so many world periods on, of the course in `probes.csv`.
     LateSpan(u64),
     /// The last over that after so many world periods.
     LastOver(u64),
@@ -271,6 +273,11 @@ impl Statistic {
             Self::Min => of(&summary.min),
             Self::Max => of(&summary.max),
             Self::Span => Some(of(&summary.max)? - of(&summary.min)?),
+            Self::Mean => {
+                let all = (1..trace.times.len()).map(|step| of(trace.value(step)?));
+                let all: Vec<f64> = all.collect::<Option<_>>()?;
+                (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+            }
             Self::LateSpan(from) => {
                 let late = (from as usize..trace.times.len()).map(|step| of(trace.value(step)?));
                 let late: Vec<f64> = late.collect::<Option<_>>()?;

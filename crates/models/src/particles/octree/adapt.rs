@@ -6,6 +6,10 @@ use souple_math::Vec3;
 use super::active::{DIVIDED, WANTED, Work};
 use super::{OctreeChoice, OctreeForce};
 
+/// A row of single particles shears and does not bend. Under a load `w` along its length `L` its slope is at most `wL/μA`, where a body
+/// as thick as its particles, `h`, bends by `wL³/6EI` beside, `I = Ah²/12`: by `2 μ/E (L/h)²` as much, and `E` is at most `3 μ`.
+const BENT_OF_SHEARED: f64 = 2.0 / 3.0;
+
 impl OctreeForce {
     /// Moves the set of divided particles on, in `memory`.
     pub(super) fn choose(&self, positions: &[Vec3], memory: &mut [f64], work: &mut Work) {
@@ -46,7 +50,8 @@ impl OctreeForce {
         }
     }
 
-    // divide where h |Δu| > refine, group where it is < coarsen for all sisters (3.11, over h)
+    // divide where h |Δu| > refine, group where it is < coarsen for all sisters (3.11, over h); a row or a sheet of
+    // single particles cannot bend, and what it does not see of that stands for it
     fn follow_criterion(
         &self,
         [refine, coarsen]: [f64; 2],
@@ -55,17 +60,29 @@ impl OctreeForce {
         work: &mut Work,
     ) {
         let (tree, first) = (&self.tree, self.tree.finest_count());
-        let variation = |particle: usize| {
+        let relative = |particle: usize| {
             let u = |at: usize| positions[at] - tree.rest[at];
             let own = u(particle);
+            move |other: u32| u(other as usize) - own
+        };
+        let variation = |particle: usize| {
             let spacing = tree.spacing[usize::from(tree.level_of[particle])];
-            spacing * work.stencils[particle].variation(|other| u(other as usize) - own)
+            spacing * work.stencils[particle].variation(relative(particle))
+        };
+        // what a particle, or the row that its mother is of, does not see of what it is asked to follow
+        let error = |particle: usize, slenderness: f64| {
+            let varies = variation(particle);
+            if slenderness == 0.0 {
+                return varies;
+            }
+            let slope = work.stencils[particle].slope(relative(particle));
+            varies.max(BENT_OF_SHEARED * slenderness * slenderness * slope)
         };
         let was: Vec<f64> = memory.to_vec();
         for particle in &work.active {
             let particle = *particle as usize;
             let Some(own) = particle.checked_sub(first) else { continue };
-            let is_wanted = was[own] == WANTED || variation(particle) > refine;
+            let is_wanted = was[own] == WANTED || error(particle, tree.slenderness[particle]) > refine;
             if !is_wanted {
                 continue;
             }
@@ -85,7 +102,9 @@ impl OctreeForce {
             let daughters = tree.daughters.of(mother);
             let is_grouped = work.is_divided(mother)
                 && daughters.iter().all(|daughter| work.is_active(*daughter as usize))
-                && daughters.iter().all(|daughter| variation(*daughter as usize) < coarsen);
+                && daughters
+                    .iter()
+                    .all(|daughter| error(*daughter as usize, tree.slenderness[mother]) < coarsen);
             // finer neighbours have priority, those that come with this step too
             let has_finer = || {
                 daughters.iter().any(|daughter| {

@@ -203,6 +203,12 @@ impl Stencil {
         held + self.volume * (mu * strain.dot(&strain) + 0.5 * lambda * strain.trace().powi(2))
     }
 
+    /// `|∇u|`, as far as neighbours tell it.
+    pub fn slope(&self, relative: impl Fn(u32) -> Vec3) -> f64 {
+        let G = self.gradient(&self.slopes, relative);
+        G.dot(&G).sqrt()
+    }
+
     /// `|Δu|` less what the mean gradient gives on a set that leans to one side [1/m]; zero of every affine motion.
     pub fn variation(&self, relative: impl Fn(u32) -> Vec3) -> f64 {
         let G = self.gradient(&self.slopes, &relative);

@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use souple_math::{Mat3, Vec3};
+use souple_mesh::BoundingBox;
+
+use crate::particles::operators::gradient_weights;
 
 /// Positions off the lattice by more than this part of its spacing are none of it.
 const OFF_LATTICE: f64 = 1e-6;
@@ -72,6 +75,9 @@ pub struct Octree {
     pub daughters: Lists<u32>,
     /// Of the same level: those that share a face, an edge or a corner, up to 26.
     pub same: Lists<u32>,
+    /// How many particles long the row or the sheet of single particles is that a particle is of: neighbours of its level do not tell
+    /// all of a gradient there. 0 where they do.
+    pub slenderness: Vec<f64>,
     /// Of the next finer level that touch the cube, its own daughters left out: up to 56.
     pub finer: Lists<u32>,
     /// Of the next coarser level that touch it, its mother left out: up to 7.
@@ -177,6 +183,7 @@ impl Octree {
             mother: vec![None; next],
             daughters: Lists::new(),
             same: Lists::new(),
+            slenderness: Vec::new(),
             finer: Lists::new(),
             coarser: Lists::new(),
             leaders: Lists::new(),
@@ -196,7 +203,35 @@ impl Octree {
                 tree.link(&made, level, at);
             }
         }
+        tree.slenderness = tree.slenderness_of_all();
         Ok(tree)
+    }
+
+    fn slenderness_of_all(&self) -> Vec<f64> {
+        let resolves = |particle: &usize| {
+            let others = self.same.of(*particle).iter();
+            let arms: Vec<Vec3> =
+                others.map(|other| self.rest[*other as usize] - self.rest[*particle]).collect();
+            gradient_weights(&arms, 3).is_some()
+        };
+        let mut is_left: Vec<bool> = (0..self.count()).map(|particle| !resolves(&particle)).collect();
+        let mut slenderness = vec![0.0; self.count()];
+        for first in 0..self.count() {
+            if !std::mem::take(&mut is_left[first]) {
+                continue;
+            }
+            let (mut joined, mut next) = (vec![first], 0);
+            while let Some(particle) = joined.get(next).copied() {
+                next += 1;
+                let others = self.same.of(particle).iter().map(|other| *other as usize);
+                joined.extend(others.filter(|other| std::mem::take(&mut is_left[*other])));
+            }
+            let extent = BoundingBox::of(joined.iter().map(|particle| self.rest[*particle])).size();
+            let longest = extent.to_array().into_iter().fold(0.0, f64::max);
+            let spacing = self.spacing[usize::from(self.level_of[first])];
+            joined.iter().for_each(|particle| slenderness[*particle] = 1.0 + longest / spacing);
+        }
+        slenderness
     }
 
     pub fn count(&self) -> usize {
@@ -398,6 +433,18 @@ pub mod tests {
                     leaders.iter().map(|(leader, weight)| turn * tree.rest[*leader as usize] * *weight).sum();
                 assert!((placed - turn * tree.rest[at]).length() < 1e-12, "{at}");
             }
+        }
+    }
+
+    /// A row of four is one, a sheet of three by two is as long as its longer side; their daughters tell gradients.
+    #[test]
+    fn rows_and_sheets_are_slender() {
+        for (counts, levels, expected) in [([16, 4, 4], 3, vec![4.0; 4]), ([6, 4, 2], 2, vec![3.0; 6])] {
+            let tree = block(counts, levels);
+            let of = |level: usize| &tree.slenderness[tree.levels[level].clone()];
+            let apart = of(0).iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(of(0).len() == expected.len() && apart < 1e-12, "{:?}", of(0));
+            assert!((1..levels).all(|level| of(level).iter().all(|slender| *slender == 0.0)));
         }
     }
 
