@@ -238,6 +238,28 @@ mod tests {
         assert!(matches!(outbox.next(&hub, Duration::from_millis(1)), Next::Close));
     }
 
+    /// Before a page is welcome, which it is when it was described the world, it gets neither pictures nor samples; with the first picture
+    /// after that it gets all samples.
+    #[test]
+    fn samples_wait_for_the_description() {
+        let hub = Hub::default();
+        let (page, outbox) = hub.join();
+        hub.samples().begin(7, 1);
+        hub.samples().push(&[0.5]);
+        hub.show(&frame(0));
+        hub.tell(page, Outgoing::Binary(frame(100)));
+        assert_eq!(sent(&outbox, &hub), Some(100), "the description");
+        assert_eq!(sent(&outbox, &hub), None, "what was shown before it");
+        hub.welcome(page);
+        hub.samples().push(&[1.5]);
+        hub.show(&frame(1));
+        assert_eq!(sent(&outbox, &hub), Some(1));
+        let Next::Send(Outgoing::Binary(samples)) = outbox.next(&hub, Duration::from_millis(1)) else {
+            panic!("no samples");
+        };
+        assert_eq!(Some(samples), hub.samples().since(&mut 0));
+    }
+
     /// A page that draws nothing, as hidden ones do, is asked whether it is there while frames go on.
     #[test]
     fn silent_pages_are_asked() {

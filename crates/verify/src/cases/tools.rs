@@ -227,6 +227,14 @@ pub(super) const CASES: &[Case] = &[
         ..HELD
     },
     Case {
+        id: "hand_jump_seldom",
+        what: "the same of a world that tells a hundred times a second, whose forces the hand is led to evenly through a period: a twentieth of the greatest all the same",
+        settings: &SELDOM,
+        source: "V-43, in a world of 10 ms; in the mutation the tool goes as far as it goes within a period at once",
+        mutation: "hands.right.between=\"hold\"",
+        ..LIVER
+    },
+    Case {
         id: "hand_jump_at_once",
         what: "the same with a tool that the hand feels to go at once, at the beginning of each period, as far as it goes within one: above what V-43 allows",
         settings: &["hands.right.between=\"hold\"", SELDOM[0], SELDOM[1]],

@@ -335,6 +335,24 @@ impl Page {
         None
     }
 
+    /// Reads up to the description of the world, and says whether a picture or samples came before it.
+    pub fn is_shown_before_described(&mut self) -> bool {
+        const PICTURES: [u8; 2] = [2, 3];
+        let mut is_shown = false;
+        loop {
+            match self.socket.read().unwrap_or_else(|error| panic!("the connection is lost: {error}")) {
+                Message::Text(text) => {
+                    let document: Value = serde_json::from_str(&text).unwrap();
+                    if document["kind"] == "scene" {
+                        return is_shown;
+                    }
+                }
+                Message::Binary(bytes) => is_shown |= PICTURES.contains(&bytes[0]),
+                _ => {}
+            }
+        }
+    }
+
     /// The kind of the next message.
     pub fn first_message(&mut self) -> String {
         match self.socket.read().unwrap_or_else(|error| panic!("the connection is lost: {error}")) {

@@ -272,6 +272,17 @@ fn edits_of_a_paused_world_are_replayed() {
     world.assert_replayed();
 }
 
+/// While pictures are made for another page, no picture and no samples reach one that comes before it was described the world.
+#[test]
+fn pages_are_described_the_world_before_it_is_shown() {
+    let world = World::open();
+    let mut watching = Page::open(&world);
+    for _ in 0..30 {
+        watching.frame();
+        assert!(!Page::open(&world).is_shown_before_described());
+    }
+}
+
 /// Whoever comes to a world that is busy is greeted before it is shown anything.
 #[test]
 fn pages_are_greeted_first() {
