@@ -50,6 +50,27 @@ fn unusual_magnitudes_are_told() {
     }
 }
 
+/// Detection beside the steps that has nothing to detect is told, and what may be chosen.
+#[test]
+fn detection_of_nothing_is_told() {
+    let late = |kind: &str| {
+        BAR.replace("period = \"10 ms\"", &format!("period = \"10 ms\"\ncollisions = \"{kind}\""))
+    };
+    let said = warnings(&late("one_period_late"));
+    assert!(said.len() == 1 && said[0].contains("scene.toml:4:"), "{said:?}");
+    assert!(said[0].contains("nothing is detected here beside the steps"));
+    assert_eq!(warnings(&late("every_step")), Vec::<String>::new());
+    assert_refused(&late("late"), &["every_step", "one_period_late"]);
+    let touched = r#"[shapes.ball]
+shape = { name = "sphere", centre = [0.5, 0.3, 0.05], radius = 0.1 }
+[[contacts]]
+body = "bar"
+shape = "ball"
+detect = "triangles"
+"#;
+    assert_eq!(warnings(&format!("{}{touched}", late("one_period_late"))), Vec::<String>::new());
+}
+
 /// A motion that is elsewhere at the start tears, and is told; gravity that is not finite then is refused.
 #[test]
 fn starts_are_at_rest() {

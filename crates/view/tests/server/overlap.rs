@@ -83,6 +83,7 @@ const PRESSED: &str = r#"
     body = "block"
     shape = "ball"
     detect = "triangles"
+    stiffness = "200 N/m"
 "#;
 
 /// Collisions are detected on a thread of their own while the world's makes its steps; what was stepped replays bit for bit.
