@@ -20,8 +20,9 @@ use souple_solve::{BlockMatrix, DirectSolver, PatternBuilder, SolveError};
 
 use crate::force::{Configuration, Force};
 use crate::state::SystemState;
-use crate::steppers::{Step, StepError};
+use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{System, SystemWorkspace};
+use crate::unilateral::{ContactSystem, Moving};
 
 /// Of a diagonal entry, what is added to it: far above rounding, so that relations which repeat others have a pivot, and far
 /// below the least eigenvalue of the scaled matrix of thousands of rods in a row, `(π/n)²/2`, so that solves converge.
@@ -163,17 +164,23 @@ pub(crate) struct Bound {
     before_step: Vec<Vec3>,
     /// Ones in the components that forces change.
     active: Vec<Vec3>,
+    contacts: ContactSystem,
 }
 
 /// What of the relations of a system stays from step to step.
 #[derive(Debug)]
-struct Structure {
+pub(crate) struct Structure {
     /// The force and the number within it of each relation.
     relations: Vec<(usize, usize)>,
     /// Where the entries of each begin, and at the end of the list how many there are.
     starts: Vec<usize>,
     /// The row of each entry.
     rows: Vec<u32>,
+    /// Relation and entry of each row: where those of each begin.
+    row_starts: Vec<usize>,
+    of_rows: Vec<(u32, u32)>,
+    /// The least row that relations lead to from each row.
+    bodies: Vec<u32>,
     /// Slot of the matrix, and the two entries of one row whose product goes there.
     products: Vec<(u32, [u32; 2])>,
     matrix: BlockMatrix,
@@ -181,9 +188,9 @@ struct Structure {
 }
 
 impl System {
-    /// Whether forces relate points that a step is to solve for.
+    /// Whether forces relate points, or keep gaps open, that a step is to solve for.
     pub fn binds(&self) -> bool {
-        self.forces.iter().any(|force| force.binding().is_some())
+        self.has_contacts() || self.forces.iter().any(|force| force.binding().is_some())
     }
 
     fn binding(&self, force: usize) -> Option<&dyn Binding> {
@@ -227,7 +234,35 @@ impl Structure {
             }
         }
         let solver = DirectSolver::analyse(&pattern, None)?;
-        Ok(Self { relations, starts, rows, products, matrix: BlockMatrix::zeros(pattern), solver })
+        let mut row_starts = vec![0];
+        row_starts.extend(of_row.iter().scan(0, |sum, related| {
+            *sum += related.len();
+            Some(*sum)
+        }));
+        let bodies = bodies(&starts, &rows, of_row.len());
+        let of_rows = of_row.concat();
+        let matrix = BlockMatrix::zeros(pattern);
+        Ok(Self { relations, starts, rows, row_starts, of_rows, bodies, products, matrix, solver })
+    }
+
+    pub(crate) fn relation_count(&self) -> usize {
+        self.relations.len()
+    }
+
+    /// Rows of one body are related to each other; no relation is of two bodies.
+    pub(crate) fn body(&self, row: usize) -> u32 {
+        self.bodies[row]
+    }
+
+    /// The relations of a row, with the entry of each.
+    pub(crate) fn entries_of(&self, row: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let entries = &self.of_rows[self.row_starts[row]..self.row_starts[row + 1]];
+        entries.iter().map(|(relation, entry)| (*relation as usize, *entry as usize))
+    }
+
+    /// `(J W Jᵀ)⁻¹` of numbers of relations, scaled.
+    pub(crate) fn solve(&self, of_relations: &mut [Vec3]) -> Result<(), StepError> {
+        self.solver.solve(of_relations).map_err(unsolved)
     }
 
     /// `W Jᵀ λ` of all relations, times a number and added to rows.
@@ -248,15 +283,51 @@ impl Structure {
     }
 }
 
-/// Adds the forces that keep relations to the forces on the placed rows, and remembers them. For steps from `x` and `v` to
+/// The body of each row: rows that relations join have the least of them.
+fn bodies(starts: &[usize], rows: &[u32], row_count: usize) -> Vec<u32> {
+    let mut least: Vec<u32> = (0..row_count as u32).collect();
+    let root = |least: &mut [u32], mut row: u32| {
+        while least[row as usize] != row {
+            least[row as usize] = least[least[row as usize] as usize];
+            row = least[row as usize];
+        }
+        row
+    };
+    for entries in starts.windows(2) {
+        for pair in rows[entries[0]..entries[1]].windows(2) {
+            let [a, b] = [root(&mut least, pair[0]), root(&mut least, pair[1])];
+            least[a.max(b) as usize] = a.min(b);
+        }
+    }
+    for row in 0..row_count as u32 {
+        least[row as usize] = root(&mut least, row);
+    }
+    least
+}
+
+/// What forces are sought for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sought {
+    /// A step: relations and contacts.
+    Step,
+    /// The accelerations at its start, of relations alone: what collides there has none.
+    Accelerations,
+}
+
+/// Adds the forces that keep relations, and gaps open, to the forces on the placed rows, and remembers them. For steps from `x` and `v` to
 /// `v' = v + h f/m`, `x' = x + h v'` of points with lumped masses.
 ///
 /// # Errors
-/// Relations that no forces keep.
-pub(crate) fn bind(step: &Step, next: &mut SystemState, ws: &mut SystemWorkspace) -> Result<(), StepError> {
+/// Relations that no forces keep, contacts whose forces are not found.
+pub(crate) fn bind(
+    step: &Step,
+    sought: Sought,
+    next: &mut SystemState,
+    ws: &mut SystemWorkspace,
+) -> Result<StepReport, StepError> {
     let clock = std::time::Instant::now();
     let mut bound = std::mem::take(&mut ws.bound);
-    let kept = bound.keep(step, next, ws);
+    let kept = bound.keep(step, sought, next, ws);
     ws.bound = bound;
     ws.stages.solve += clock.elapsed().as_secs_f64();
     kept
@@ -282,17 +353,15 @@ impl Bound {
     fn keep(
         &mut self,
         step: &Step,
+        sought: Sought,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
-    ) -> Result<(), StepError> {
+    ) -> Result<StepReport, StepError> {
         let mut structure = match self.structure.take() {
             Some(structure) => structure,
             None => Structure::new(step.system).map_err(unsolved)?,
         };
-        let kept = match structure.relations.is_empty() {
-            true => Ok(()),
-            false => self.keep_in(&mut structure, step, next, ws),
-        };
+        let kept = self.keep_in(&mut structure, (step, sought), next, ws);
         self.structure = Some(structure);
         kept
     }
@@ -300,13 +369,75 @@ impl Bound {
     fn keep_in(
         &mut self,
         structure: &mut Structure,
-        step: &Step,
+        (step, sought): (&Step, Sought),
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
-    ) -> Result<(), StepError> {
+    ) -> Result<StepReport, StepError> {
         self.lead(step, ws);
         self.look(step, structure, &ws.rows.positions, next)?;
         self.scale(step, structure)?;
+        if structure.relation_count() > 0 {
+            self.factorize(step, structure)?;
+        }
+        self.take_off(step, structure, next);
+        self.multipliers.clear();
+        self.multipliers.resize(structure.relations.len(), Vec3::ZERO);
+        if sought == Sought::Accelerations || !step.system.has_contacts() {
+            self.allow(step, structure);
+            self.solve(step, structure)?;
+            self.give(step.system, structure, next, &mut ws.row_force);
+            return Ok(StepReport::default());
+        }
+        self.keep_with_contacts(step, structure, next, ws)
+    }
+
+    /// Relations and contacts in turns, until all of them hold where the step leads.
+    fn keep_with_contacts(
+        &mut self,
+        step: &Step,
+        structure: &Structure,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let (mut contacts, mut places) =
+            (std::mem::take(&mut self.contacts), std::mem::take(&mut self.places));
+        contacts.begin(&self.moving(step, structure, &ws.rows.positions), next, &mut places)?;
+        self.places = places;
+        self.allow(step, structure);
+        loop {
+            self.solve(step, structure)?;
+            if structure.relation_count() > 0 {
+                // to rounding: contacts of one body are to agree about where it is
+                self.correct(step, structure)?;
+            }
+            let mut places = std::mem::take(&mut self.places);
+            let moving = self.moving(step, structure, &ws.rows.positions);
+            let improved = contacts.improve(&moving, next, &mut places);
+            self.places = places;
+            if !improved? {
+                break;
+            }
+        }
+        self.give(step.system, structure, next, &mut ws.row_force);
+        let moving = self.moving(step, structure, &ws.rows.positions);
+        let report = contacts.give(&moving, next, (&self.places, &mut ws.row_force));
+        self.contacts = contacts;
+        Ok(report)
+    }
+
+    fn moving<'a>(&'a self, step: &'a Step, structure: &'a Structure, positions: &'a [Vec3]) -> Moving<'a> {
+        Moving {
+            step,
+            structure,
+            positions,
+            before: &self.before,
+            inverse_masses: &self.inverse_masses,
+            gradients: &self.gradients,
+            active: &self.active,
+        }
+    }
+
+    fn factorize(&mut self, step: &Step, structure: &mut Structure) -> Result<(), StepError> {
         self.assemble(structure);
         structure.solver.factorize(&structure.matrix).map_err(|error| match error {
             SolveError::NotPositiveDefinite { block, .. } | SolveError::Singular { block, .. }
@@ -320,11 +451,7 @@ impl Bound {
                 )
             }
             error => unsolved(error),
-        })?;
-        self.take_off(step, structure, next);
-        self.solve(step, structure)?;
-        self.give(step.system, structure, next, &mut ws.row_force);
-        Ok(())
+        })
     }
 
     /// Takes the forces of the step before, which are among those that were summed, off where the step leads: such as do what others do
@@ -343,27 +470,30 @@ impl Bound {
 
     /// Finds the multipliers under which the step leads to where all relations are what they are to be.
     fn solve(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
-        let square = step.timestep * step.timestep;
-        self.multipliers.clear();
-        self.multipliers.resize(structure.relations.len(), Vec3::ZERO);
         let mut solves = 0;
-        self.allow(step, structure);
         while let Some(worst) = self.farthest_off(step, structure)? {
             if solves == MOST_SOLVES {
                 return Err(self.unkept(step, structure, worst));
             }
             solves += 1;
-            self.change.clear();
-            let active = self.off.iter().zip(self.active.iter().zip(&self.scales));
-            let scaled = |(off, (active, scale)): (&Vec3, (&Vec3, &Vec3))| {
-                Mat3::from_diagonal(*active) * (Mat3::from_diagonal(*scale) * *off) / square
-            };
-            self.change.extend(active.map(scaled));
-            structure.solver.solve(&mut self.change).map_err(unsolved)?;
-            structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
-            for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
-                *multiplier += *change;
-            }
+            self.correct(step, structure)?;
+        }
+        Ok(())
+    }
+
+    /// Changes multipliers by what relations are off, and where the step leads with them.
+    fn correct(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+        let square = step.timestep * step.timestep;
+        self.change.clear();
+        let active = self.off.iter().zip(self.active.iter().zip(&self.scales));
+        let scaled = |(off, (active, scale)): (&Vec3, (&Vec3, &Vec3))| {
+            Mat3::from_diagonal(*active) * (Mat3::from_diagonal(*scale) * *off) / square
+        };
+        self.change.extend(active.map(scaled));
+        structure.solve(&mut self.change)?;
+        structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
+        for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
+            *multiplier += *change;
         }
         Ok(())
     }
@@ -613,6 +743,7 @@ impl Bound {
         let matrices = self.gradients.capacity() + self.inverse_masses.capacity();
         vectors.into_iter().map(|vector| size_of::<Vec3>() * vector.capacity()).sum::<usize>()
             + size_of::<Mat3>() * matrices
+            + self.contacts.bytes()
             + self.structure.as_ref().map_or(0, |structure| {
                 size_of_val(structure.products.as_slice())
                     + structure.matrix.bytes()

@@ -16,6 +16,7 @@ use crate::holding::Holding;
 use crate::kept::{Kept, KeptRef};
 use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
+use crate::unilateral::Unilateral;
 
 /// What a force reads: the rows as they stand, and its own memory.
 #[derive(Clone, Copy, Debug)]
@@ -420,6 +421,11 @@ pub trait Force: Send + Sync {
     /// What of it relates points by forces that a step solves for; `None` of a force that says itself how it pushes. Between steps such a
     /// force gives what was found last.
     fn binding(&self) -> Option<&dyn Binding> {
+        None
+    }
+
+    /// What of it keeps gaps open by forces that a step solves for, likewise.
+    fn unilateral(&self) -> Option<&dyn Unilateral> {
         None
     }
 

@@ -33,6 +33,7 @@ pub mod system;
 pub mod tangent;
 mod timeline;
 pub mod tool;
+pub mod unilateral;
 pub mod world;
 
 pub use binding::Binding;
@@ -60,6 +61,7 @@ pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub use tangent::Curvature;
 pub use timeline::{Span, Timeline};
 pub use tool::{HeldTool, Tool, Toolbox};
+pub use unilateral::{ImpactLaw, Sides, Unilateral};
 pub use world::{
     CommittedRows, EnergyReport, Field, FieldStep, Model, ResumeError, Workspace, World, WorldError,
 };

@@ -44,7 +44,9 @@ pub fn lowest(
     ws: &mut SystemWorkspace,
     settings: &Settings,
 ) -> Result<Modes, ModesError> {
-    if let Some(force) = system.forces.iter().find(|force| force.binding().is_some()) {
+    if let Some(force) =
+        system.forces.iter().find(|force| force.binding().is_some() || force.unilateral().is_some())
+    {
         return Err(ModesError::Bound { force: force.name().to_owned() });
     }
     let balanced = vec![Vec3::ZERO; system.kinematics.row_count()];

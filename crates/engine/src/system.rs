@@ -200,7 +200,8 @@ impl System {
                 force.name()
             ));
         }
-        let binds = self.forces.iter().find(|force| force.binding().is_some());
+        let binds =
+            self.forces.iter().find(|force| force.binding().is_some() || force.unilateral().is_some());
         if let Some(force) = binds.filter(|_| !self.stepper.binds_points(self)) {
             let hindered = if !self.mass.is_lumped() {
                 "; masses of this system are not lumped"

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
 use souple_engine::levels::{Division, Levels};
 use souple_engine::{
-    Constraint, Force, Kinematics, Mass, Model, Rows, State, Stepper, System, UnknownKind, World,
+    Constraint, Force, ImpactLaw, Kinematics, Mass, Model, Rows, State, Stepper, System, UnknownKind, World,
 };
 use souple_formal::Formula;
 use souple_math::Vec3;
@@ -26,6 +26,8 @@ use souple_models::materials::{self, Material};
 use souple_models::multiresolution::{
     Choice, Coupling, LevelsDescription, LevelsForce, Loops, PLACE_VARIABLES, Stiffness,
 };
+use souple_models::network::relations::{Guide, Relation};
+use souple_models::network::{RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints};
 use souple_models::solids::{
     RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
 };
@@ -195,6 +197,46 @@ fn explicit_steps() {
 fn explicit_steps_with_a_consistent_mass() {
     let block = Block { inertia: Inertia::Consistent, ..PLAIN };
     assert_eq!(allocations(|| block.world(stepper("symplectic_euler", &[]), 1e-4), 3, 10), 0);
+}
+
+/// Balls that have fallen onto a floor, and onto each other.
+#[test]
+fn steps_of_rigid_balls() {
+    let make = || {
+        let mut kinematics = Kinematics::default();
+        kinematics.add_unknowns(UnknownKind::Point, 12);
+        let mut mass = Mass::new(12);
+        mass.diagonal.fill(0.1);
+        let gravity = Gravity::new("gravity", Vec3::Y * -9.81, &mass, &kinematics).unwrap();
+        let law = ImpactLaw { restitution: 0.3, friction: 0.4 };
+        let floor = |row: u32| -> Box<dyn Relation> {
+            Box::new(Guide::plane(row, Vec3::ZERO, Vec3::new(0.05, 1.0, 0.02)).unwrap())
+        };
+        let sided = Sided { sense: Sense::AtLeast, radius: 0.05, law };
+        let floor = SidedConstraints::new("floor", (0..12).map(floor).collect(), sided);
+        let balls = RigidBalls::new(RigidBallsDescription {
+            name: "balls".into(),
+            first: 0..12,
+            second: 0..12,
+            diameter: 0.1,
+            law,
+            held: Vec::new(),
+            timestep: 2e-3,
+        });
+        let system = System {
+            name: "main".into(),
+            kinematics,
+            mass,
+            forces: vec![Box::new(gravity), Box::new(floor), Box::new(balls)],
+            constraints: Vec::new(),
+            stepper: stepper("t_simulation", &[]),
+            steps_per_period: 1,
+        };
+        let place = |i: u32| Vec3::new(0.11 * f64::from(i % 3), 0.06 + 0.105 * f64::from(i / 3), 0.0);
+        start((system, (0..12).map(place).collect()), 2e-3)
+    };
+    // they collide, and those that were listed first have come apart
+    assert_eq!(allocations(make, 400, 100), 0);
 }
 
 /// A frame that turns has inertia of its own.

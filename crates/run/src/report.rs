@@ -145,6 +145,8 @@ impl Report {
                 "shortened": self.solver.shortened,
                 "largest_linear_residual": self.solver.linear_residual,
                 "largest_newton_residual": self.solver.newton_residual,
+                "contact_iterations": self.solver.contact_iterations,
+                "largest_contact_residual": self.solver.contact_residual,
             },
             "probes": probes,
             "sounds": self.sounds.iter().map(SoundSummary::to_json).collect::<serde_json::Map<_, _>>(),

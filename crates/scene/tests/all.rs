@@ -17,6 +17,7 @@ mod modules;
 mod mutations;
 mod networks;
 mod quantities;
+mod rigid_contacts;
 mod scenes;
 mod skins;
 mod surfaces;

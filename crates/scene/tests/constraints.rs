@@ -6,13 +6,13 @@ use souple_engine::{StepError, World};
 use souple_models::network::Constraints;
 use souple_scene::Scene;
 
-fn read(text: &str, settings: &[&str]) -> Result<Scene, String> {
+pub fn read(text: &str, settings: &[&str]) -> Result<Scene, String> {
     let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
     souple_scene::read_text("constraints", text, Path::new("."), &settings)
         .map_err(|errors| errors.to_string())
 }
 
-fn started(text: &str, settings: &[&str]) -> World {
+pub fn started(text: &str, settings: &[&str]) -> World {
     let scene = read(text, settings).unwrap_or_else(|message| panic!("{message}"));
     scene.model.start(scene.state)
 }

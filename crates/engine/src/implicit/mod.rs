@@ -643,12 +643,11 @@ impl ImplicitStep<'_> {
         self.go(q, fraction, buffers);
         Ok(StepReport {
             shortened: u64::from(fraction < 1.0),
-            gone_on: 0,
             newton_iterations: 1,
             linear_iterations: u64::from(solved.iterations),
             made_definite: u64::from(solved.made_definite),
             linear_residual: solved.residual,
-            newton_residual: 0.0,
+            ..StepReport::default()
         })
     }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use souple_math::Vec3;
 use souple_solve::reduce::{self, KickAndDrift};
 
-use crate::binding::bind;
+use crate::binding::{Sought, bind};
 use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
 use crate::kept::Summed;
 use crate::state::SystemState;
@@ -139,8 +139,9 @@ fn step_points(
     system.advance_memory(ws, next, around, timestep, Summed::Here);
     system.project_free(&mut ws.row_force);
     ws.held.take_over(&mut ws.row_force, &mut ws.rows.velocities);
+    let mut report = StepReport::default();
     if system.binds() {
-        bind(step, next, ws)?;
+        report.merge(&bind(step, Sought::Step, next, ws)?);
     }
     let (forces, masses, rows) = (&ws.row_force, &system.mass.diagonal, &mut ws.rows);
     let (q, v) = (&mut rows.positions, &mut rows.velocities);
@@ -155,7 +156,7 @@ fn step_points(
         let block = constraint.block as usize;
         (next.q[block], next.v[block]) = (q[block], v[block]);
     }
-    Ok(StepReport::default())
+    Ok(report)
 }
 
 /// The accelerations `f/m` of points at the start of a step, with the forces that keep relations about it.
@@ -171,7 +172,7 @@ pub(super) fn bound_accelerations(
     system.project_free(&mut ws.row_force);
     // nothing moves: no work is done, and the step that follows finds the forces anew
     let memory = next.memory.clone();
-    bind(step, next, ws)?;
+    bind(step, Sought::Accelerations, next, ws)?;
     next.memory = memory;
     ws.bound.remember_rates(step, &ws.rows.positions, &mut next.memory);
     for (out, (force, mass)) in out.iter_mut().zip(ws.row_force.iter().zip(&system.mass.diagonal)) {

@@ -47,6 +47,10 @@ pub struct StepReport {
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
     pub newton_residual: f64,
+    /// Sweeps over contacts whose forces are solved for.
+    pub contact_iterations: u64,
+    /// How far such contacts are from signs, gaps and friction as they are to be, of how far they would be without forces.
+    pub contact_residual: f64,
 }
 
 impl StepReport {
@@ -59,6 +63,8 @@ impl StepReport {
         self.gone_on += other.gone_on;
         self.linear_residual = self.linear_residual.max(other.linear_residual);
         self.newton_residual = self.newton_residual.max(other.newton_residual);
+        self.contact_iterations += other.contact_iterations;
+        self.contact_residual = self.contact_residual.max(other.contact_residual);
     }
 }
 

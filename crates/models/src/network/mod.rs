@@ -24,7 +24,9 @@ mod pair_tangent;
 mod piecewise;
 pub mod relations;
 mod rheology;
+pub mod rigid_balls;
 mod sample;
+pub mod sided;
 mod span;
 mod view;
 pub mod written;
@@ -41,6 +43,8 @@ pub use law::{AsksFor, BuildLink, LinkEntry, LinkError, LinkLaw, Making, Moment,
 pub use laws::LINKS;
 pub use layout::Ends;
 pub use piecewise::Piecewise;
+pub use rigid_balls::{RigidBalls, RigidBallsDescription};
 pub use sample::state_dimension;
+pub use sided::{Sense, Sided, SidedConstraints};
 pub use span::Span;
 pub use view::{Map, ViewPoint, ViewedLinks};

@@ -219,10 +219,10 @@ pub fn add_forces(
         }
     }
     let constraints: Vec<_> = (0..network.constraints.len())
-        .filter_map(|index| constraints::of(draft, body, network, index))
+        .filter_map(|index| constraints::of(draft, (body, network), timestep, index))
         .collect();
-    constraints::check_size(network, body, &constraints.iter().collect::<Vec<_>>(), draft.log);
-    forces.extend(constraints.into_iter().map(|constraints| Box::new(constraints) as Box<dyn Force>));
+    constraints::check_size(network, body, &constraints, draft.log);
+    forces.extend(constraints.into_iter().map(constraints::Made::into_force));
 }
 
 fn law(

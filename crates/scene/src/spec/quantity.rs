@@ -341,7 +341,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "constraint_force",
-        "force of the constraints of networks on their masses",
+        "force of the constraints of networks on their masses, but of those with a sense, which are contacts",
         MECHANICS,
         points("N", Vector, Sum, PointQuantity::ConstraintForce),
     ),

@@ -42,6 +42,7 @@ mod pressure;
 mod resolution;
 mod rheology;
 mod rheometer;
+mod rigid;
 mod rubber;
 mod skins;
 mod soft_cube;
@@ -122,6 +123,7 @@ pub const TABLES: &[&[Case]] = &[
     switching::CASES,
     heat::CASES,
     constraints::CASES,
+    rigid::CASES,
     material_fields::CASES,
     matter::CASES,
     plastic_bodies::CASES,

@@ -63,6 +63,15 @@ impl Relation for Guide {
         Vec3::from_array(self.normals.map(|normal| -normal.dot(velocity)))
     }
 
+    fn slope(&self, _positions: &[Vec3], _time: f64) -> Option<Vec3> {
+        let [normal, across, _] = self.normals;
+        (across == Vec3::ZERO).then_some(normal)
+    }
+
+    fn surface_velocity(&self, time: f64) -> Vec3 {
+        self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.velocity(self.place, time))
+    }
+
     fn magnitude(&self, _positions: &[Vec3], time: f64) -> Vec3 {
         let offset = self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.offset(self.place, time));
         Vec3::from_array([self.place.length() + offset.length(); 3])

@@ -45,6 +45,16 @@ pub trait Relation: Send + Sync + Debug {
         None
     }
 
+    /// Of a relation of one component of a mass, or of the difference of two, what it changes by with that; `None` of others, which have no sides.
+    fn slope(&self, _positions: &[Vec3], _time: f64) -> Option<Vec3> {
+        None
+    }
+
+    /// How fast what it holds its mass to moves [m/s].
+    fn surface_velocity(&self, _time: f64) -> Vec3 {
+        Vec3::ZERO
+    }
+
     /// The two masses that it is a line between, for pictures.
     fn ends(&self) -> Option<[u32; 2]> {
         None
@@ -120,6 +130,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Relations that have sides change along their slopes as their gradients say.
+    #[test]
+    fn slopes_are_gradients() {
+        let positions = [
+            Vec3::new(0.1, 0.2, -0.1),
+            Vec3::new(1.1, 0.0, 0.2),
+            Vec3::new(0.2, 0.9, 0.1),
+            Vec3::new(0.3, 0.4, 1.2),
+        ];
+        let single = Surface { row: [1], zeros: [Formula::compile("x^2 + z", &VARIABLES).unwrap()].into() };
+        let mut sided = 0;
+        for relation in all(&positions).into_iter().chain([Box::new(single) as Box<dyn Relation>]) {
+            let Some(slope) = relation.slope(&positions, 0.4) else { continue };
+            sided += 1;
+            let mut gradients = Vec::new();
+            relation.add_gradients(&positions, 0.4, &mut gradients);
+            for (gradient, sign) in gradients.iter().zip([1.0, -1.0]) {
+                // the same numbers by another way
+                assert!((gradient.row(0) - slope * sign).length() < 1e-15, "{}", relation.describe());
+            }
+        }
+        // a rod, a plane and a surface
+        assert_eq!(sided, 3);
     }
 
     /// What relations change by where masses stay is their derivative by time.

@@ -34,6 +34,10 @@ impl Relation for Rod {
         gradients.extend([first_row(along), first_row(-along)]);
     }
 
+    fn slope(&self, positions: &[Vec3], _time: f64) -> Option<Vec3> {
+        Some(self.apart(positions).try_normalised().unwrap_or(Vec3::ZERO))
+    }
+
     fn magnitude(&self, _positions: &[Vec3], _time: f64) -> Vec3 {
         Vec3::X * self.length
     }

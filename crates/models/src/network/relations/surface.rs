@@ -53,6 +53,12 @@ impl Relation for Surface {
         Vec3::from_array([0, 1, 2].map(of))
     }
 
+    fn slope(&self, positions: &[Vec3], time: f64) -> Option<Vec3> {
+        let [zero] = &*self.zeros else { return None };
+        let at = self.at(positions, time);
+        Some(Vec3::from_array([0, 1, 2].map(|axis| zero.differentiate(&at, axis).derivative)))
+    }
+
     // what formulas sum is not seen from outside: what they are a metre away, the unit that they are written in, is of its order
     fn magnitude(&self, positions: &[Vec3], time: f64) -> Vec3 {
         let at = self.at(positions, time);

@@ -7,7 +7,9 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_models::loads::FormulaVector;
 use souple_models::network::relations::{Acceleration, Area, Guide, Joint, Relation, Rod, Surface, Volume};
-use souple_models::network::{Constraints, Keeping};
+use souple_models::network::{
+    Constraints, Keeping, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints,
+};
 
 use super::super::bodies::Placed;
 use super::super::{Draft, memory, motion, start};
@@ -26,25 +28,60 @@ struct Making<'a> {
     spec: &'a ConstraintSpec,
 }
 
+/// What a constraint became.
+pub enum Made {
+    /// It holds from both sides.
+    Kept(Constraints),
+    Sided(SidedConstraints),
+    Balls(RigidBalls),
+}
+
+impl Made {
+    pub fn into_force(self) -> Box<dyn Force> {
+        match self {
+            Self::Kept(constraints) => Box::new(constraints),
+            Self::Sided(constraints) => Box::new(constraints),
+            Self::Balls(balls) => Box::new(balls),
+        }
+    }
+
+    fn kept(&self) -> Option<&Constraints> {
+        match self {
+            Self::Kept(constraints) => Some(constraints),
+            Self::Sided(_) | Self::Balls(_) => None,
+        }
+    }
+}
+
 /// The force of a constraint of this number; `None` where it was refused.
-pub fn of(draft: &Draft, body: &Placed, network: &Network, index: usize) -> Option<Constraints> {
+pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, index: usize) -> Option<Made> {
     let spec = &network.constraints[index];
     let making = Making { draft, body, network, spec };
-    let relations = making.relations(spec.kind.as_ref()?)?;
     let name = match &spec.name[..] {
         "" => format!("{}.constraints[{index}]", body.spec.name),
         name => format!("{}.{name}", body.spec.name),
     };
+    let kind = spec.kind.as_ref()?;
+    if let ConstraintKind::Balls(diameter) = kind {
+        return making.balls(name, *diameter, timestep).map(Made::Balls);
+    }
+    let relations = making.relations(kind)?;
+    if let Some(sense) = spec.sense {
+        let sided = Sided { sense, radius: spec.radius, law: spec.law };
+        let constraints = SidedConstraints::new(name, relations, sided);
+        making.check_sides(&constraints)?;
+        return Some(Made::Sided(constraints));
+    }
     let keeping = spec.augmented.map_or(Keeping::Exact { time: spec.time }, Keeping::Augmented);
     let constraints = Constraints::new(name, relations, keeping);
     making.check_start(&constraints, keeping)?;
-    Some(constraints)
+    Some(Made::Kept(constraints))
 }
 
 /// Refuses constraints which are kept exactly and share masses so often that memory does not hold the matrix of their forces.
-pub fn check_size(network: &Network, body: &Placed, constraints: &[&Constraints], log: &Log) {
+pub fn check_size(network: &Network, body: &Placed, constraints: &[Made], log: &Log) {
     let mut shared = vec![0_u64; body.mesh.points.len()];
-    let exact = constraints.iter().filter(|it| it.binding().is_some());
+    let exact = constraints.iter().filter_map(Made::kept).filter(|it| it.binding().is_some());
     let rows = exact.flat_map(|it| it.relations().iter().flat_map(|relation| relation.rows()));
     for row in rows {
         shared[*row as usize - body.rows.start] += 1;
@@ -64,10 +101,10 @@ pub fn check_size(network: &Network, body: &Placed, constraints: &[&Constraints]
     }
 }
 
-/// The ends of all rods, in the order of constraints; `None` where some were refused.
+/// The ends of all rods and strings, in the order of constraints; `None` where some were refused.
 pub fn rods(network: &Network, points: &[Vec3], draft: &Draft) -> Option<Vec<[u32; 2]>> {
     let mut rods = Vec::new();
-    for spec in &network.constraints {
+    for spec in network.constraints.iter().filter(|spec| spec.sense != Some(Sense::AtLeast)) {
         if let Some(ConstraintKind::Rod(join, _)) = &spec.kind {
             let of = (join, &spec.of[..], &spec.kind_site, "constraint");
             rods.extend(ends::joined(of, network, points, memory::links_that_fit(), draft.log)?);
@@ -129,7 +166,77 @@ impl Making<'_> {
             }
             ConstraintKind::Area(normal, part) => self.area(*normal, part),
             ConstraintKind::Volume(triangles, part) => self.volume(triangles, part),
+            ConstraintKind::Balls(_) => None,
         }
+    }
+
+    /// Balls that keep out of each other, but for those that rods and joints hold.
+    fn balls(&self, name: String, diameter: f64, timestep: f64) -> Option<RigidBalls> {
+        let (points, most) = (&self.body.mesh.points, memory::links_that_fit());
+        let all = 0..points.len() as u32;
+        let (first, second) = match &self.spec.of[..] {
+            [] => (all.clone(), all),
+            _ => ends::groups(&self.spec.of, self.network)?,
+        };
+        let mut held = Vec::new();
+        for spec in
+            self.network.constraints.iter().filter(|spec| !spec.is_sided() && spec.augmented.is_none())
+        {
+            if let Some(ConstraintKind::Rod(join, _) | ConstraintKind::Joint(join)) = &spec.kind {
+                let of = (join, &spec.of[..], &spec.kind_site, "constraint");
+                held.extend(ends::joined(of, self.network, points, most, self.draft.log)?);
+            }
+        }
+        held.iter_mut().for_each(|ends| ends.sort_unstable());
+        held.sort_unstable();
+        held.dedup();
+        let places = start::places(self.body.spec.start.as_ref(), points);
+        let reach = diameter * (1.0 - HOLDS);
+        let Some(near) = ends::near(&places, first.clone(), second.clone(), reach, most) else {
+            let message = format!("more than {most} pairs of balls begin within each other");
+            return self.refuse(Code::TooLarge, message, "balls that begin apart");
+        };
+        let apart = |[a, b]: [u32; 2]| (places[a as usize] - places[b as usize]).length();
+        let entered = near.into_iter().find(|[a, b]| held.binary_search(&[*a.min(b), *a.max(b)]).is_err());
+        if let Some([a, b]) = entered.filter(|ends| apart(*ends) < reach) {
+            let message =
+                format!("masses {a} and {b} begin {} m apart, within balls of {diameter} m", apart([a, b]));
+            return self.refuse(Code::Conflict, message, "balls that begin apart, or a smaller `diameter`");
+        }
+        let rows = |range: std::ops::Range<u32>| self.row(range.start)..self.row(range.end);
+        let held = held.into_iter().map(|ends| ends.map(|end| self.row(end))).collect();
+        let (first, second) = (rows(first), rows(second));
+        Some(RigidBalls::new(RigidBallsDescription {
+            name,
+            first,
+            second,
+            diameter,
+            law: self.spec.law,
+            held,
+            timestep,
+        }))
+    }
+
+    /// What holds from one side does so at the start.
+    fn check_sides(&self, constraints: &SidedConstraints) -> Option<()> {
+        let points = start::places(self.body.spec.start.as_ref(), &self.body.mesh.points);
+        let scale =
+            points.iter().flat_map(|point| point.to_array()).fold(0.0_f64, |most, x| most.max(x.abs()));
+        let positions = self.rows_at(&points);
+        for (index, relation) in constraints.relations().iter().enumerate() {
+            let gap = constraints.gap_of(index, &positions, 0.0);
+            let slope = relation.slope(&positions, 0.0).unwrap_or(Vec3::ZERO);
+            if !(gap.is_finite() && slope.is_finite()) {
+                let message = format!("at the start there is no value of {}", relation.describe());
+                return self.refuse(Code::NotFinite, message, "formulas that have one where masses start");
+            }
+            let mass = relation.rows()[0] as usize - self.body.rows.start;
+            if -gap > HOLDS * (slope.length() * scale + relation.magnitude(&positions, 0.0).x) {
+                let message = format!("mass {mass} begins {:.3e} beyond {}", -gap, relation.describe());
+                return self.refuse(Code::Conflict, message, "masses that begin where it holds");
+            }
+        }
+        Some(())
     }
 
     fn of_pairs<R: Relation + 'static>(

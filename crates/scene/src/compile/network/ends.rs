@@ -152,7 +152,7 @@ fn pair_count(first: &Range<u32>, last: &Range<u32>) -> u64 {
 
 /// Pairs of two groups at most `reach` apart, in the order of the first, then of the second; `None` where there are more
 /// than `most`.
-fn near(
+pub(super) fn near(
     points: &[Vec3],
     first: Range<u32>,
     last: Range<u32>,

@@ -1,8 +1,9 @@
 //! Constraints between masses: geometric relations that forces keep.
 
+use souple_engine::ImpactLaw;
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_models::network::Augmented;
+use souple_models::network::{Augmented, Sense};
 use souple_table::{Range, Value};
 
 use super::Join;
@@ -127,8 +128,20 @@ static AUGMENTED: Keys = Keys::new(
     ],
 );
 
+static BALLS: Keys = Keys::new(
+    "constraint_balls",
+    "balls that keep out of each other: all masses of a group, or those of one group and those of another, but for pairs that a rod or a joint holds",
+    &[Key::number("diameter", "m", Range::POSITIVE, "nearer than which the centres of no two come")
+        .required()],
+);
+
 const KINDS: &[&str] =
-    &["rod", "joint", "nail", "line", "plane", "surface", "acceleration", "area", "volume"];
+    &["rod", "joint", "nail", "line", "plane", "surface", "acceleration", "area", "volume", "balls"];
+
+/// Of a constraint with a sense.
+const OF_SIDED: [&str; 3] = ["restitution", "friction", "radius"];
+
+const SENSES: &[&str] = &["at_least", "at_most"];
 
 pub(super) static CONSTRAINT: Keys = Keys::new(
     "constraint",
@@ -138,7 +151,7 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
         Key::new(
             "of",
             Shape::Texts,
-            "the groups whose masses it is of, one or two of `rod` and `joint`; all masses where left out",
+            "the groups whose masses it is of, one or two of `rod`, `joint` and `balls`; all masses where left out",
         ),
         Key::new("rod", Shape::Table(&ROD), "pairs at one distance"),
         Key::new("joint", Shape::Table(&JOINT), "pairs at one place"),
@@ -149,6 +162,28 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
         Key::new("acceleration", Shape::Table(&ACCELERATION), "each accelerated as told"),
         Key::new("area", Shape::Table(&AREA), "an area that they enclose"),
         Key::new("volume", Shape::Table(&VOLUME), "a volume that they enclose"),
+        Key::new("balls", Shape::Table(&BALLS), "none nearer to another than a diameter"),
+        Key::new(
+            "sense",
+            Shape::Choice(SENSES),
+            "of a rod, a plane or a surface that holds from one side alone: masses at least, or at most, that far from each other, on the side of the normal or where the formula is positive, or on the other",
+        ),
+        Key::number(
+            "restitution",
+            "",
+            Range::closed(0.0, 1.0),
+            "of what has a sense, and of balls: part of the velocity of approach that masses part with",
+        )
+        .or(Value::Number(0.0)),
+        Key::number("friction", "", Range::NOT_NEGATIVE, "of the same, Coulomb's coefficient")
+            .or(Value::Number(0.0)),
+        Key::number(
+            "radius",
+            "m",
+            Range::NOT_NEGATIVE,
+            "of planes and surfaces with a sense: how far from them masses stay; of a surface in the unit of its formula",
+        )
+        .or(Value::Number(0.0)),
         Key::number(
             "time",
             "s",
@@ -170,6 +205,11 @@ pub struct ConstraintSpec {
     /// [s]
     pub time: f64,
     pub augmented: Option<Augmented>,
+    /// From which side it holds; from both where `None`.
+    pub sense: Option<Sense>,
+    pub law: ImpactLaw,
+    /// [m]
+    pub radius: f64,
     pub site: Site,
     /// Of what is said of its kind.
     pub kind_site: Site,
@@ -191,6 +231,8 @@ pub enum ConstraintKind {
     Area(Vec3, Formula),
     /// Of triangles, and the part likewise.
     Volume(Vec<[u32; 3]>, Formula),
+    /// Of a diameter [m].
+    Balls(f64),
 }
 
 /// What guides masses.
@@ -243,6 +285,13 @@ impl ConstraintSpec {
                 refuse(key, "an acceleration is told, and held at once", "`acceleration` alone");
             }
         }
+        let sense = reader.has("sense").then(|| match reader.choice("sense") {
+            "at_most" => Sense::AtMost,
+            _ => Sense::AtLeast,
+        });
+        check_sense(kind.as_ref(), sense, reader, &refuse);
+        let law =
+            ImpactLaw { restitution: reader.number("restitution"), friction: reader.number("friction") };
         let kind_site = written.first().map_or_else(|| reader.site(), |kind| reader.site_of(kind));
         Self {
             name: reader.text("name"),
@@ -250,17 +299,72 @@ impl ConstraintSpec {
             kind,
             time: reader.number("time"),
             augmented,
+            sense,
+            law,
+            radius: reader.number("radius"),
             site: reader.site(),
             kind_site,
         }
+    }
+
+    /// Whether it holds from one side alone, by forces that push and do not pull.
+    pub fn is_sided(&self) -> bool {
+        self.sense.is_some() || matches!(self.kind, Some(ConstraintKind::Balls(_)))
+    }
+}
+
+/// Refuses senses of what has no sides, and what only sides have.
+fn check_sense(
+    kind: Option<&ConstraintKind>,
+    sense: Option<Sense>,
+    reader: &Reader,
+    refuse: &impl Fn(&str, &str, &str),
+) {
+    let Some(kind) = kind else { return };
+    let has_sides = match kind {
+        ConstraintKind::Rod(..) | ConstraintKind::Plane(..) => true,
+        ConstraintKind::Surface(zeros) => zeros.len() == 1,
+        _ => false,
+    };
+    if sense.is_some() && !has_sides {
+        refuse(
+            "sense",
+            "this constraint has no two sides",
+            "`sense` of a rod, a plane or a surface of one formula",
+        );
+    }
+    let is_balls = matches!(kind, ConstraintKind::Balls(_));
+    if sense.is_none() && !is_balls {
+        for key in reader.written(&OF_SIDED) {
+            refuse(key, "this constraint holds from both sides", "a `sense`, or `balls`");
+        }
+    } else {
+        for key in reader.written(&["time", "augmented"]) {
+            refuse(
+                key,
+                "what holds from one side holds at once",
+                "a constraint without `sense`, or no such key",
+            );
+        }
+    }
+    let is_rod = matches!(kind, ConstraintKind::Rod(..));
+    if (is_rod || is_balls) && reader.has("radius") {
+        refuse(
+            "radius",
+            "masses are kept from each other",
+            "`length` of the rod, or `diameter` of the balls",
+        );
+    }
+    if is_rod && sense == Some(Sense::AtMost) && reader.number("friction") > 0.0 {
+        refuse("friction", "a string has nothing to rub on", "friction of what keeps masses apart");
     }
 }
 
 impl ConstraintKind {
     fn read(kind: &str, of: &[String], reader: &Reader) -> Option<Self> {
         Some(match kind {
-            "rod" | "joint" if of.len() > 2 => {
-                let message = format!("a {kind} has two ends");
+            "rod" | "joint" | "balls" if of.len() > 2 => {
+                let message = format!("`{kind}` is between one group and itself, or two groups");
                 reader.log().add(Code::Conflict, &reader.site(), message, "one group in `of`, or two");
                 return None;
             }
@@ -276,6 +380,7 @@ impl ConstraintKind {
             "acceleration" => {
                 Self::Acceleration(reader.maybe_vector_formula("formula")?, reader.axes("axes"))
             }
+            "balls" => Self::Balls(reader.maybe_number("diameter")?),
             "area" => Self::Area(axis(reader, "normal")?, part(reader)?),
             _ => Self::Volume(triangles(reader)?, part(reader)?),
         })

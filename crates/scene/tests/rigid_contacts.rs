@@ -1,0 +1,279 @@
+//! Contacts between masses whose forces are solved for: signs and friction, momenta and energy, what is refused.
+
+use souple_engine::{Force, World};
+use souple_models::network::{RigidBalls, SidedConstraints};
+
+use crate::constraints::{read, started};
+
+/// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
+const FALLING: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, -9.81, 0]
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 5
+[networks.heap.masses.balls]
+lattice = { origin = [0, 0.06, 0], spacing = 0.11, counts = [3, 4, 1] }
+velocity = [0.2, 0, 0.1]
+mass = 0.1
+[networks.heap.masses.triangle]
+positions = [[0.4, 0.2, 0], [0.5, 0.2, 0], [0.45, 0.32, 0.02]]
+mass = 0.2
+[[networks.heap.constraints]]
+name = "rods"
+of = ["triangle"]
+rod = { all = true }
+[[networks.heap.constraints]]
+name = "balls"
+balls = { diameter = 0.1 }
+friction = 0.3
+[[networks.heap.constraints]]
+name = "floor"
+plane = { place = [0, 0, 0], normal = [0.1, 1, 0] }
+sense = "at_least"
+radius = 0.05
+friction = 0.5
+[[networks.heap.constraints]]
+name = "wall"
+plane = { place = [0.8, 0, 0], normal = [-1, 0, 0] }
+sense = "at_least"
+radius = 0.05
+"#;
+
+/// Of each contact its gap [m], and what presses along and across it [N].
+fn contacts(world: &World) -> Vec<[f64; 3]> {
+    let mut found = Vec::new();
+    world.visit_forces(0, &mut |force: &dyn Force, at| {
+        let Some(unilateral) = force.unilateral() else { return };
+        for contact in 0..unilateral.contact_count(at.pairs) {
+            let gap = unilateral.gap(contact, at.pairs, at.positions, at.time);
+            let normal = unilateral.slope(contact, at.pairs, at.positions, at.time);
+            let push = unilateral.force(contact, at.memory, at.pairs);
+            let along = push.dot(normal);
+            found.push([gap, along, (push - normal * along).length()]);
+        }
+    });
+    found
+}
+
+/// Gaps stay open, forces push, only what is closed presses, and friction is within its cone, in every step of a fall and after it.
+#[test]
+fn forces_and_gaps_are_complementary() {
+    let mut world = started(FALLING, &[]);
+    let mut pressing = 0;
+    for step in 0..150 {
+        world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
+        for [gap, along, across] in contacts(&world) {
+            // 1e-7 of what a step would sink without forces, at the speed of the fall some millimetres
+            assert!(gap > -1e-9, "step {step}: {gap}");
+            assert!(along >= 0.0, "step {step}: {along}");
+            // normals have turned from where the step started by its way, a hundredth of a ball at most
+            assert!(across <= 0.5 * along + 0.03 * along.max(1e-6), "step {step}: {across} of {along}");
+            if along > 1e-6 {
+                pressing += 1;
+                assert!(gap < 1e-9, "step {step}: {gap} with {along}");
+            }
+        }
+    }
+    assert!(pressing > 500, "{pressing}");
+}
+
+/// What is found by the grid is what is said pair by pair.
+#[test]
+fn balls_are_rods_that_keep_apart() {
+    let text = FALLING
+        .replace("of = [\"triangle\"]\nrod = { all = true }", "of = [\"triangle\"]\nrod = { chain = true }");
+    let mut searched = started(&text, &["networks.heap.constraints[1].of=[\"balls\"]"]);
+    let pairs = text.replace(
+        "balls = { diameter = 0.1 }",
+        "of = [\"balls\"]\nrod = { all = true, length = 0.1 }\nsense = \"at_least\"",
+    );
+    let mut told = started(&pairs, &[]);
+    for _ in 0..20 {
+        searched.step().unwrap();
+        told.step().unwrap();
+    }
+    for (a, b) in searched.state().systems[0].q.iter().zip(&told.state().systems[0].q) {
+        // a hundred steps, each solved to 1e-7 of some millimetres
+        assert!((*a - *b).length() < 1e-7, "{a:?} {b:?}");
+    }
+}
+
+/// A run that goes on from its state makes the same bits, and so do any number of threads.
+#[test]
+fn contacts_go_on_from_state() {
+    let mut world = started(FALLING, &[]);
+    (0..20).for_each(|_| {
+        world.step().unwrap();
+    });
+    let mut resumed = read(FALLING, &[]).unwrap().model.start(world.state().clone());
+    (0..20).for_each(|_| {
+        world.step().unwrap();
+        resumed.step().unwrap();
+    });
+    assert!(world.state() == resumed.state());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let threaded = pool.install(|| {
+        let mut world = started(FALLING, &[]);
+        (0..40).for_each(|_| {
+            world.step().unwrap();
+        });
+        world.state().clone()
+    });
+    assert!(world.state() == &threaded);
+}
+
+const BOUNCING: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, -10, 0]
+[systems.main]
+stepper = "t_simulation"
+[networks.ball.masses.ball]
+positions = [[0, 1, 0]]
+mass = 2
+[[networks.ball.constraints]]
+name = "floor"
+plane = { place = [0, 0, 0], normal = [0, 1, 0] }
+sense = "at_least"
+restitution = 1
+"#;
+
+/// An elastic impact is the reversal of what led to it: a ball comes back to where it was let go, as often as it falls.
+#[test]
+fn elastic_impacts_are_reversible() {
+    let mut world = started(BOUNCING, &[]);
+    let mut heights = Vec::new();
+    for _ in 0..2000 {
+        world.step().unwrap();
+        heights.push(world.state().systems[0].q[0].y);
+    }
+    let tops: Vec<f64> =
+        heights.windows(3).filter(|it| it[1] >= it[0] && it[1] > it[2]).map(|it| it[1]).collect();
+    assert!(tops.len() > 20, "{}", tops.len());
+    for top in tops {
+        // of 1 m and the first step below it, each impact solved to 1e-7 of the 4 cm of a step
+        assert!((top - 1.0).abs() < 2e-3, "{top}");
+    }
+    let last = heights.iter().rev().take(100).fold(0.0_f64, |most, y| most.max(*y));
+    let first = heights.iter().take(100).fold(0.0_f64, |most, y| most.max(*y));
+    assert!((last - first).abs() < 1e-6 + 1e-3, "{first} {last}");
+}
+
+/// Collisions among balls keep the momentum, and what they take is what is missing.
+#[test]
+fn collisions_keep_momentum_and_account() {
+    let text = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+[networks.gas.masses.left]
+lattice = { origin = [-0.5, 0, 0], spacing = 0.12, counts = [2, 3, 2] }
+velocity = [1, 0.1, 0]
+mass = 0.1
+[networks.gas.masses.right]
+lattice = { origin = [0.1, 0.03, 0.02], spacing = 0.12, counts = [2, 3, 2] }
+velocity = [-1, 0, 0.1]
+mass = 0.3
+[[networks.gas.constraints]]
+name = "balls"
+balls = { diameter = 0.1 }
+restitution = 0.6
+friction = 0.2
+[probes.momentum]
+quantity = "momentum"
+[probes.energy]
+quantity = "energy.total"
+[probes.given_off]
+quantity = "energy.dissipated"
+"#;
+    let scene = read(text, &[]).unwrap();
+    let probes = scene.probes;
+    let mut world = scene.model.start(scene.state);
+    let measured = |world: &mut World| [0, 1, 2].map(|index| probes[index].measure(world).numbers());
+    let start = measured(&mut world);
+    (0..100).for_each(|_| {
+        world.step().unwrap();
+    });
+    let end = measured(&mut world);
+    for axis in 0..3 {
+        // equal and opposite to rounding
+        assert!((start[0][axis] - end[0][axis]).abs() < 1e-12, "{start:?} {end:?}");
+    }
+    assert!(end[2][0] > 0.1, "{end:?}");
+    // ½ m v² counts what each step has done, to rounding
+    assert!((start[1][0] - end[1][0] - end[2][0]).abs() < 1e-12, "{start:?} {end:?}");
+}
+
+/// A wall that is led pushes what lies before it, and carries what sticks to it.
+#[test]
+fn led_walls_push_and_carry() {
+    let carried = r#"networks.ball.constraints=[{ plane = { place = [0, 1, 0], normal = [0, 1, 0], motion = { formula = ["0.5 * t", "0.2 * t", 0] } }, sense = "at_least", friction = 1 }]"#;
+    let mut world = started(BOUNCING, &[carried, "networks.ball.velocity=[0.5, 0.2, 0]"]);
+    for step in 1..=100 {
+        world.step().unwrap();
+        let (time, q) = (0.01 * f64::from(step), world.state().systems[0].q[0]);
+        assert!((q.x - 0.5 * time).abs() < 1e-6 && (q.y - 1.0 - 0.2 * time).abs() < 1e-6, "{step}: {q:?}");
+    }
+}
+
+#[test]
+fn wrong_contacts_are_refused() {
+    let floor = |with: &str| {
+        format!(
+            "networks.heap.constraints=[{{ plane = {{ place = [0, 0, 0], normal = [0, 1, 0] }}, {with} }}]"
+        )
+    };
+    let other = |kind: &str| format!("networks.heap.constraints=[{{ {kind} }}]");
+    for (setting, words) in [
+        (floor("sense = \"at_least\", restitution = 1.5"), "restitution"),
+        (floor("sense = \"at_least\", friction = -1"), "friction"),
+        (floor("sense = \"above\""), "sense"),
+        (floor("restitution = 0.5"), "holds from both sides"),
+        (floor("sense = \"at_least\", time = 1"), "what holds from one side holds at once"),
+        (floor("sense = \"at_least\", radius = 0.07"), "mass 0 begins 1.000e-2 beyond a plane"),
+        (floor("sense = \"at_most\""), "mass 0 begins 6.000e-2 beyond a plane"),
+        (other("joint = { chain = true }, sense = \"at_least\""), "has no two sides"),
+        (other("balls = { diameter = 0.12 }"), "masses 0 and 1 begin 0.11 m apart, within balls of 0.12 m"),
+        (other("balls = { diameter = 0 }"), "diameter"),
+        (other("balls = {}"), "diameter"),
+        (other("balls = { diameter = 0.1 }, sense = \"at_least\""), "has no two sides"),
+        (other("balls = { diameter = 0.1 }, radius = 1"), "masses are kept from each other"),
+        (
+            other("balls = { diameter = 0.1 }, of = [\"a\", \"b\", \"c\"]"),
+            "`balls` is between one group and itself",
+        ),
+        (
+            other("rod = { chain = true, length = 3 }, sense = \"at_most\", friction = 0.5"),
+            "a string has nothing to rub on",
+        ),
+        (other("rod = { chain = true, length = 3 }, sense = \"at_least\""), "begins"),
+        ("systems.main.stepper=verlet".to_owned(), "relates points by forces that are solved for"),
+    ] {
+        match read(FALLING, &[&setting]) {
+            Ok(_) => panic!("{setting} is taken"),
+            Err(message) => assert!(message.contains(words), "{setting}: {message}"),
+        }
+    }
+}
+
+/// What holds from one side is told apart from what holds from both.
+#[test]
+fn constraints_become_what_they_say() {
+    let world = started(FALLING, &[]);
+    let mut kinds = Vec::new();
+    world.visit_forces(0, &mut |force, _| {
+        if force.as_any().is::<SidedConstraints>() {
+            kinds.push(("sided", force.name().to_owned()));
+        } else if force.as_any().is::<RigidBalls>() {
+            kinds.push(("balls", force.name().to_owned()));
+        }
+    });
+    let names: Vec<(&str, &str)> = kinds.iter().map(|(kind, name)| (*kind, name.as_str())).collect();
+    assert_eq!(names, [("balls", "heap.balls"), ("sided", "heap.floor"), ("sided", "heap.wall")]);
+}
