@@ -183,3 +183,17 @@ impl<S: Simd> Real for Lanes<S> {
         all
     }
 }
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use pulp::x86::{V3, V4};
+
+    use super::*;
+
+    /// A register takes as much room as it has numbers, and the wider ones ask for a stack that is aligned.
+    #[test]
+    fn registers_are_aligned_and_not_padded() {
+        assert_eq!((size_of::<Lanes<V3>>(), align_of::<Lanes<V3>>()), (32, 32));
+        assert_eq!((size_of::<Lanes<V4>>(), align_of::<Lanes<V4>>()), (64, 32));
+    }
+}

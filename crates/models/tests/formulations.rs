@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use souple_engine::{Configuration, Force, TangentWeights};
 use souple_formal::element::{Axis, Cut};
-use souple_formal::law::EnergyLaw;
+use souple_formal::law::{EnergyLaw, LawParameter, LawText};
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh};
 use souple_models::derive::{MapKind, element_kernel};
@@ -267,6 +267,24 @@ fn derived_kernels_are_their_texts() {
         let derived = element_kernel(name, &written, &compiled, *element, (rule, *map)).unwrap();
         assert!(words(&derived) == words(text), "{name} on {element}: `cargo xtask kernels`");
     }
+}
+
+/// A law of `C` alone on boxes is written as one, whatever its numbers are called; one that sees `det F` is not, nor is any where samples
+/// share no columns.
+#[test]
+fn laws_of_the_metric_are_written_so() {
+    let kernel = |energy: &str, rule: &str| {
+        let number = LawParameter::Number { value: 1e3, dimension: None };
+        let parameters = vec![("dC".to_owned(), number)];
+        let text = LawText { energy: energy.to_owned(), definitions: Vec::new(), parameters };
+        let (kind, law) = (ElementKind::Hex8, EnergyLaw::compile(&text).unwrap());
+        let rule = kind.rule(rule).unwrap();
+        element_kernel("named", &text, &law, kind, (rule, MapKind::Box)).unwrap()
+    };
+    let of_metric = |text: &str| text.contains("fn stress_of<R: Real>(D: &Constants<R>, C: &Mat3<R>)");
+    assert!(of_metric(&kernel("dC/2*tr(E)^2 + dC*dot(E, E)", "gauss_8")));
+    assert!(!of_metric(&kernel("dC/2*tr(E)^2 + dC*dot(E, E)", "gauss_27")));
+    assert!(!of_metric(&kernel("dC/2*(I1 - 3) - dC*log(J)", "gauss_8")));
 }
 
 /// One stiffness for all cells of one shape is the law at the samples, on every element with more than one: where the whole bar is

@@ -301,7 +301,7 @@ struct OfMetric {
 impl OfMetric {
     /// `None`: `energy` sees `F` otherwise than by the lengths and angles of what it makes of the axes.
     fn of(graph: &mut Graph, energy: Expr, deformation: Expr) -> Option<Self> {
-        let [metric, variation] = ["C", "dC"].map(|name| graph.symbol(name, Shape::Matrix));
+        let [metric, variation] = ["C", "dC"].map(|name| graph.own_matrix(name));
         let transposed = graph.transpose(deformation);
         let (product, square) =
             (graph.multiply(transposed, deformation), graph.dot(deformation, deformation));

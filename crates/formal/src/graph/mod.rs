@@ -259,6 +259,11 @@ impl Graph {
         self.symbol(&format!("{OWN}{name}"), Shape::Vector)
     }
 
+    /// The matrix of that name, as for numbers.
+    pub(crate) fn own_matrix(&mut self, name: &str) -> Expr {
+        self.symbol(&format!("{OWN}{name}"), Shape::Matrix)
+    }
+
     /// The name and shape of a symbol; `None` for other expressions.
     pub fn symbol_of(&self, expr: Expr) -> Option<&Symbol> {
         match self.node(expr) {
