@@ -380,3 +380,17 @@ fn approach_is_that_of_a_critically_damped_oscillator() {
         }
     }
 }
+
+/// Strings are shown as links, and so have a state for each cell of the mesh; what keeps masses apart has neither.
+#[test]
+fn what_keeps_masses_apart_is_no_link() {
+    for (sense, links) in [("at_most", 6), ("at_least", 0)] {
+        let setting = format!("networks.chain.constraints[0].sense=\"{sense}\"");
+        let scene = read(TUMBLING, &[&setting]).unwrap();
+        let cells = scene.bodies[0].mesh.cell_count();
+        let mut shown = 0;
+        let world = scene.model.start(scene.state);
+        world.visit_forces(0, &mut |force, at| force.visit_links(at, &mut |_| shown += 1));
+        assert_eq!((shown, cells), (links, links), "{sense}");
+    }
+}

@@ -1,8 +1,8 @@
 //! What boxes along the axes have for themselves: columns from modes of their corners, and laws of `C = FᵀF` alone.
 //!
 //! A hexahedron of eight samples `(±g, ±g, ±g)`: sums and differences of its corners along each axis, of which three axes have seven in
-//! common, give the columns `∂x/∂X_i`, each a bilinear function of the other two coordinates, at `±g` of these. Forces go back by the
-//! transpose.
+//! common, give the columns `∂x/∂X_i`, each a bilinear function of the other two coordinates, at `±g` of these. Forces go back by
+//! minus the transpose.
 
 use std::fmt::Write;
 
@@ -115,7 +115,7 @@ impl Corners {
         let mut terms: Vec<(String, Vec<String>)> = Vec::new();
         for (axis, name) in ["xi", "eta", "zeta"].into_iter().enumerate() {
             let columns = [0, 1, 2, 3].map(|index| format!("s[{}]", 4 * axis + index)).join(", ");
-            let _ = writeln!(out, "    let {name} = modes([{columns}], &K[{axis}]);");
+            let _ = writeln!(out, "    let {name} = forces_of_modes([{columns}], &K[{axis}]);");
             for (index, mode) in Self::modes(axis).into_iter().enumerate() {
                 let term = format!("{name}[{index}]");
                 match terms.iter_mut().find(|(known, _)| *known == mode) {

@@ -544,7 +544,7 @@ impl File<'_> {
             };
             let metrics = if of_metric.is_empty() { "" } else { ", metric, metric_differential" };
             line(&format!(
-                "use crate::solids::derived::boxes::{{{of_metric}along, bilinear{metrics}, modes}};"
+                "use crate::solids::derived::boxes::{{{of_metric}along, bilinear, forces_of_modes{metrics}}};"
             ));
         }
         line(&format!(
@@ -600,7 +600,7 @@ impl File<'_> {
             fields.of_nodes()
         ));
         line(&format!(
-            "/// Forces on nodes from {of_stress} by columns, the transpose of [`columns`].\n#[inline(always)]\nfn to_nodes<R: Real>(s: &[Vec3<R>; {columns}]{weights}) -> [Vec3<R>; {nodes}] {{\n{}}}\n",
+            "/// Forces on nodes from {of_stress} by columns: minus the transpose of [`columns`].\n#[inline(always)]\nfn to_nodes<R: Real>(s: &[Vec3<R>; {columns}]{weights}) -> [Vec3<R>; {nodes}] {{\n{}}}\n",
             fields.to_nodes()
         ));
         self.gradients(&mut line);

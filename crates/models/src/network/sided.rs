@@ -186,6 +186,10 @@ impl Force for SidedConstraints {
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
+        // what keeps masses apart is no link: nothing is between them
+        if self.sided.sense == Sense::AtLeast {
+            return;
+        }
         for (index, relation) in self.relations.iter().enumerate() {
             let Some(ends) = relation.ends() else { continue };
             let along = relation.slope(at.positions, at.time).unwrap_or(Vec3::ZERO);

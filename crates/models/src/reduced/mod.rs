@@ -6,7 +6,7 @@
 //! *Modes* are a floating frame and a deformation seen from it, `x = c + R (s + d)`.
 //! The deformation is a sum of natural modes, `d = Σ u_i φ_i`, of a body of finite elements: Pentland and Williams's (1989), and in the
 //! frame of a body that turns that of flexible multibody dynamics. With `Kφ = ω² M φ` and `φ·Mφ = 1` each amplitude is an oscillator of its
-//! own, `ü + z u̇ + ω² u = f`, and what costs is the number of modes and not that of elements. Strains are small, whatever the turn: the law
+//! own, `ü + z u̇ + ω² u = f`: unknowns, masses and stiffness are as many as modes, whatever the mesh. Strains are small, whatever the turn: the law
 //! is the body's own as it is at rest.
 //!
 //! Points of the body's mesh are rows over those of the frame and of its modes, with weights that never change (see
@@ -44,7 +44,8 @@ pub struct ModalBasis {
 pub enum Coupling {
     /// All: the frame may turn.
     All,
-    /// None between different modes: they swing without each other where the frame stays, `Σ_p m_p φ_i·φ_j = 0`.
+    /// None between different modes: they swing without each other where the frame stays at rest, `Σ_p m_p φ_i·φ_j = 0`. That is the trace
+    /// of what is left out: the rest of it, `Σ_p m_p φ_i×φ_j`, is seen by frames that turn, and by angular momentum.
     OfOneMode,
 }
 
@@ -68,6 +69,24 @@ impl ModalBasis {
     pub fn weights(&self, point: usize) -> impl Iterator<Item = f64> + '_ {
         let of_modes = self.shapes.iter().flat_map(move |shape| shape[point].to_array());
         std::iter::once(1.0).chain(self.arms[point].to_array()).chain(of_modes)
+    }
+
+    /// `Σ_q m_pq φ_i(q)` of each mode, and its moment about the centre: what the mode has of a motion of the whole, `φ_i·M v`.
+    pub fn momenta(&self, of_points: &Mass) -> Vec<[Vec3; 2]> {
+        let of_mode = |shape: &Vec<Vec3>| {
+            let mut sums = [Vec3::ZERO; 2];
+            let mut add = |at: usize, of: usize, m: f64| {
+                sums[0] += shape[of] * m;
+                sums[1] += self.arms[at].cross(shape[of] * m);
+            };
+            of_points.diagonal.iter().enumerate().for_each(|(point, m)| add(point, point, *m));
+            for &(a, b, m) in &of_points.couplings {
+                add(a as usize, b as usize, m);
+                add(b as usize, a as usize, m);
+            }
+            sums
+        };
+        self.shapes.iter().map(of_mode).collect()
     }
 
     /// Adds the mass of the points to that over the rows from `first_row` on, `M_ab = Σ_pq m_pq W_pa W_qb`: their kinetic energy, exactly.

@@ -21,16 +21,18 @@ pub struct PlacedModes {
     basis: ModalBasis,
     /// Row of the frame's origin.
     first_row: usize,
-    /// Whether pins hold the frame.
-    is_held: bool,
+    /// Where pins hold the frame: what sets each mode swinging, `φ_i·M v` of the body moved by `v` and turned by `ω` about the frame's
+    /// origin, as vectors to be multiplied with both.
+    held: Option<Vec<[Vec3; 2]>>,
+    coupling: Coupling,
 }
 
 /// Rigid motions of a body in space.
 const RIGID: usize = 6;
 /// `ω²` of what moves rigidly is rounding, below this part of that of the first mode that strains.
 const RIGID_PART: f64 = 1e-6;
-/// Where modes of free bodies are sought from, below zero, in squares of the time that a longitudinal wave takes across: thin bodies
-/// swing that slowly.
+/// Where `ω²` of free bodies is sought from, below zero, over the inverse square of the time that a longitudinal wave takes across: thin
+/// bodies swing that slowly.
 const SHIFT: f64 = 1e-4;
 
 impl PlacedModes {
@@ -71,8 +73,7 @@ impl PlacedModes {
     }
 
     pub fn add_mass(&self, of_points: &Mass, mass: &mut Mass) {
-        let coupling = if self.is_held { Coupling::OfOneMode } else { Coupling::All };
-        self.basis.add_mass(of_points, coupling, self.first_row as u32, mass);
+        self.basis.add_mass(of_points, self.coupling, self.first_row as u32, mass);
     }
 
     /// What resists the modes and what damps them.
@@ -100,7 +101,7 @@ impl PlacedModes {
     pub fn constraints(&self, kinematics: &Kinematics) -> Vec<Constraint> {
         let block = kinematics.block_of(self.first_row as u32);
         let mut constraints = Vec::new();
-        if self.is_held {
+        if self.held.is_some() {
             constraints.push(Constraint::pin(block, self.basis.centre));
             constraints.push(Constraint::of_turn(block + 1, Mat3::IDENTITY, None));
         }
@@ -118,12 +119,18 @@ impl PlacedModes {
         constraints
     }
 
-    /// Velocity blocks of a motion `v + ω × (x - c)` of the whole.
+    /// Velocity blocks of a motion `v + ω × (x - c)` of the whole; where the frame is held, what its modes have of it.
     pub fn start_velocity(&self, kinematics: &Kinematics, motion: [Vec3; 3], v: &mut [Vec3]) {
         let [velocity, spin, centre] = motion;
         let block = kinematics.block_of(self.first_row as u32) as usize;
-        v[block] = velocity + spin.cross(self.basis.centre - centre);
-        v[block + 1] = spin;
+        let of_origin = velocity + spin.cross(self.basis.centre - centre);
+        let Some(held) = &self.held else {
+            [v[block], v[block + 1]] = [of_origin, spin];
+            return;
+        };
+        for (mode, [moved, turned]) in held.iter().enumerate() {
+            v[block + 2 + mode / 3][mode % 3] = moved.dot(of_origin) + turned.dot(spin);
+        }
     }
 }
 
@@ -143,6 +150,7 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
         refuse(format!("body `{}` has flat cells, and no modes", body.spec.name), "cells with volume");
         return None;
     };
+    let mass = of_points.clone();
     let modes = match modes_of(draft, body, spec, (of_points, elastic, constraints)) {
         Ok(modes) => modes,
         Err(error) => {
@@ -179,7 +187,11 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     }
     let eigenvalues = values[rigid..].to_vec();
     let basis = ModalBasis::new(centre, &body.mesh.points, modes.shapes[rigid..].to_vec(), eigenvalues);
-    Some(PlacedModes { basis, first_row: 0, is_held })
+    let held = is_held.then(|| basis.momenta(&mass));
+    // what a frame of reference that turns does to one mode by another is in the masses between them
+    let swings_alone = is_held && draft.spec.world.frame.is_none();
+    let coupling = if swings_alone { Coupling::OfOneMode } else { Coupling::All };
+    Some(PlacedModes { basis, first_row: 0, held, coupling })
 }
 
 /// Whether a body has nothing that modes know no way of; what it has is reported.

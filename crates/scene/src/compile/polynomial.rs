@@ -6,7 +6,7 @@ use souple_engine::{DerivedRow, Feedback, Force, Kinematics, Mass, UnknownKind};
 use souple_math::Vec3;
 use souple_models::frames::samples_of_cells;
 use souple_models::reduced::{Polynomial, PolynomialDescription, PolynomialForce};
-use souple_models::solids::Section;
+use souple_models::solids::{Quadrature, Section};
 
 use super::Draft;
 use super::bodies::{Placed, solid_name};
@@ -108,6 +108,7 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedPolynomial> {
         ("damping.rayleigh_stiffness", own.damping.rayleigh_stiffness > 0.0, site(None)),
         ("damping.viscosity", own.damping.viscosity > 0.0, site(None)),
         ("damping.neighbour_friction", own.damping.neighbour_friction > 0.0, site(None)),
+        ("quadrature", own.quadrature != Quadrature::Default, site(None)),
         ("mass", matches!(own.mass, MassKind::Uniform | MassKind::Voronoi), site(None)),
     ];
     let mut is_alone = true;

@@ -159,8 +159,9 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Map::General => MapKind::General,
         Map::Box => MapKind::Box,
     };
-    let element = element_data(kind, rule, map)
-        .map_err(|error| Refusal::request("map", "box", "general", error.to_string()))?;
+    let element = element_data(kind, rule, map).map_err(|error| {
+        Refusal::request("map", "box", "`--map general`, or `--element hex8` or `quad4`", error.to_string())
+    })?;
     let cut = Cut::from_name(&arguments.cut).ok_or_else(|| {
         let message = format!("there is no cut `{}`", arguments.cut);
         Refusal::request("cut", &arguments.cut, "none, all, or letters of L, G, N, D", message)
@@ -185,7 +186,11 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         emit_text(&maxima(&element, &law, &association), "maxima", arguments.json);
         return Ok(End::Done);
     }
-    if arguments.emit == Emit::Kernel && arguments.out.is_none() {
+    if let (Emit::Kernel, Some(folder)) = (arguments.emit, &arguments.out) {
+        let message = "a kernel has no fragments: it is one text, on standard output".to_owned();
+        return Err(Refusal::request("out", &folder.display().to_string(), "no `--out`", message));
+    }
+    if arguments.emit == Emit::Kernel {
         let written = souple_models::derive::element_kernel(&name, &text, &law, kind, (rule, map));
         let source = written.map_err(|error| {
             Refusal::request("law", &name, "a law of invariants without directions", error.to_string())

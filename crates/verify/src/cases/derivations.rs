@@ -60,7 +60,7 @@ const fn over_in_tensors(other: &'static str) -> Reading {
 }
 
 /// Operations of the differential of an element under St. Venant-Kirchhoff's law, EXP-26: tetrahedra, pyramids, boxes, prisms is the
-/// order of the code that is written, and the last three are close; in tensors, as bodies run it, boxes and prisms are alike.
+/// order of the code that is written, and the last three are close; in tensors, with `F` at each sample, boxes and prisms are alike.
 const DIFFERENTIAL: Case = Case {
     capabilities: &["FAU-10"],
     reference: 1.0,
@@ -547,7 +547,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "exp26_tet4_run",
-        what: "the same as bodies run it: a tetrahedron over a pyramid of five samples, a fifth at most",
+        what: "the same in tensors: a tetrahedron over a pyramid of five samples, a fifth at most",
         settings: &[STVK, "element=tet4"],
         reading: over_in_tensors("element=pyramid5 rule=gauss_5"),
         // one sample against five

@@ -62,7 +62,7 @@ const HALVED: &[Variant] = &[
 ];
 
 /// Energy that the first mode of stretch of a spinning bar stores: `2/15 A ρ² ω⁴ R⁵ / E`, of which the first mode has `960/π⁶`.
-const STRETCHED: f64 = 2.0 / 15.0 * 0.01 * 1e6 * 1296.0 * 9.765_625e-4 / 5e6 * 0.998_558;
+const STRETCHED: f64 = 2.0 / 15.0 * 0.01 * 1e6 * 1296.0 * 9.765_625e-4 / 5e6 * 0.998_555;
 
 pub(super) const CASES: &[Case] = &[
     Case {

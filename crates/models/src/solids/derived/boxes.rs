@@ -41,9 +41,9 @@ pub(super) fn add_scaled<R: Real>(a: Vec3<R>, b: Vec3<R>, weight: R) -> Vec3<R> 
     Vec3::new(b.x.mul_add(weight, a.x), b.y.mul_add(weight, a.y), b.z.mul_add(weight, a.z))
 }
 
-/// The transpose of [`bilinear`] with the other sign: forces are against what stretches.
+/// Minus the transpose of [`bilinear`]: forces on modes, against what stretches them, from stresses.
 #[inline(always)]
-pub(super) fn modes<R: Real>(values: [Vec3<R>; 4], weights: &[R; 3]) -> [Vec3<R>; 4] {
+pub(super) fn forces_of_modes<R: Real>(values: [Vec3<R>; 4], weights: &[R; 3]) -> [Vec3<R>; 4] {
     let (below, above) = (values[0] + values[2], values[1] + values[3]);
     let (less, more) = (values[2] - values[0], values[3] - values[1]);
     let [of_none, of_one, of_both] = [-weights[0], -weights[1], -weights[2]];

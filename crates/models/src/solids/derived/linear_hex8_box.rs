@@ -9,7 +9,7 @@
 use souple_math::{Mat3, Real, Vec3};
 
 use crate::materials::Parameters;
-use crate::solids::derived::boxes::{along, bilinear, modes};
+use crate::solids::derived::boxes::{along, bilinear, forces_of_modes};
 use crate::solids::derived::{DerivedElement, RestSamples};
 
 /// See the module.
@@ -136,12 +136,12 @@ fn columns<R: Real>(x: &[Vec3<R>; 8], K: &[[R; 3]; 3]) -> [Vec3<R>; 12] {
     [xi[0], xi[1], xi[2], xi[3], eta[0], eta[1], eta[2], eta[3], zeta[0], zeta[1], zeta[2], zeta[3]]
 }
 
-/// Forces on nodes from `ω P` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P` by columns: minus the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 12], K: &[[R; 3]; 3]) -> [Vec3<R>; 8] {
-    let xi = modes([s[0], s[1], s[2], s[3]], &K[0]);
-    let eta = modes([s[4], s[5], s[6], s[7]], &K[1]);
-    let zeta = modes([s[8], s[9], s[10], s[11]], &K[2]);
+    let xi = forces_of_modes([s[0], s[1], s[2], s[3]], &K[0]);
+    let eta = forces_of_modes([s[4], s[5], s[6], s[7]], &K[1]);
+    let zeta = forces_of_modes([s[8], s[9], s[10], s[11]], &K[2]);
     let dss = xi[0];
     let dds = xi[1] + eta[1];
     let dsd = xi[2] + zeta[1];

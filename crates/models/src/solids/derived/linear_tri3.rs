@@ -107,7 +107,7 @@ fn columns<R: Real>(x: &[Vec3<R>; 3]) -> [Vec3<R>; 2] {
     [e1m0, e2m0]
 }
 
-/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns: minus the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 2]) -> [Vec3<R>; 3] {
     [s[0] + s[1], -s[0], -s[1]]

@@ -133,7 +133,7 @@ fn columns<R: Real>(x: &[Vec3<R>; 5]) -> [Vec3<R>; 6] {
     ]
 }
 
-/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns: minus the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 6]) -> [Vec3<R>; 5] {
     let t1m0_xi = weighted([(s[0], C[1]), (s[5], C[4])]);

@@ -166,7 +166,7 @@ fn columns<R: Real>(x: &[Vec3<R>; 8]) -> [Vec3<R>; 12] {
     ]
 }
 
-/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns: minus the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 12]) -> [Vec3<R>; 8] {
     let t1m0_xi = weighted([(s[0], C[0]), (s[5] + s[8], C[1]), (s[11], C[2])]);

@@ -156,7 +156,7 @@ fn columns<R: Real>(x: &[Vec3<R>; 6]) -> [Vec3<R>; 7] {
     ]
 }
 
-/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns: minus the transpose of [`columns`].
 #[inline(always)]
 fn to_nodes<R: Real>(s: &[Vec3<R>; 7]) -> [Vec3<R>; 6] {
     let t1m0_xi = weighted([(s[0], C[0]), (s[5], C[2])]);
