@@ -46,11 +46,34 @@ pub fn penetrations(part: &Part, world: &mut World) -> Vec<f64> {
     part.rows.iter().map(|row| depths[*row as usize]).collect()
 }
 
+/// How far the contacts of each row of a part whose forces are solved for are from complementarity, the worst of several: `|g|` of a gap whose
+/// force pushes, `−g` of a closed one; zero where there are none [m].
+pub fn residuals(part: &Part, world: &mut World) -> Vec<f64> {
+    let mut worst = vec![0.0; world.rows(part.system).positions.len()];
+    world.visit_forces(part.system, &mut |force, at| {
+        let Some(unilateral) = force.unilateral().filter(|_| part.has_contact(force.name())) else { return };
+        for contact in 0..unilateral.contact_count(at.pairs) {
+            let gap = unilateral.gap(contact, at.pairs, at.positions, at.time);
+            let slope = unilateral.slope(contact, at.pairs, at.positions, at.time);
+            let is_pressing = unilateral.force(contact, at.memory, at.pairs).dot(slope) > 0.0;
+            let off = if is_pressing { gap.abs() } else { (-gap).max(0.0) };
+            // of formulas in metres, as far as they have a slope
+            let steepness = if slope == Vec3::ZERO { 1.0 } else { slope.length() };
+            for (row, _) in unilateral.sides(contact, at.pairs).iter() {
+                let known: &mut f64 = &mut worst[row];
+                *known = known.max(off / steepness);
+            }
+        }
+    });
+    part.rows.iter().map(|row| worst[*row as usize]).collect()
+}
+
 /// All points of the system that touch by the part's contact, or by any.
 fn for_contacts(part: &Part, world: &mut World, visit: &mut dyn FnMut(&ContactPoint)) {
     world.with_system(part.system, |system: &System, state, around, ws| {
-        let named = |name: &str| part.contact.as_deref().is_none_or(|contact| contact == name);
-        for (index, force) in system.forces.iter().enumerate().filter(|(_, force)| named(force.name())) {
+        for (index, force) in
+            system.forces.iter().enumerate().filter(|(_, force)| part.has_contact(force.name()))
+        {
             force.visit_contacts(&system.view(index, &ws.rows, state, around), visit);
         }
     });

@@ -98,6 +98,13 @@ struct Part {
     hold: Option<String>,
 }
 
+impl Part {
+    /// Whether it is of the contact of that name too.
+    fn has_contact(&self, name: &str) -> bool {
+        self.contact.as_deref().is_none_or(|contact| contact == name)
+    }
+}
+
 /// What of a body follows a bone.
 #[derive(Clone, Debug)]
 struct BonePart {

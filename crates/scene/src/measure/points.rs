@@ -6,7 +6,7 @@ use souple_models::loads::Attachments;
 use souple_models::network::Constraints;
 
 use super::body::centre_of_mass;
-use super::contact::{Share, contact_forces, penetrations};
+use super::contact::{Share, contact_forces, penetrations, residuals};
 use super::reaction::reactions;
 use super::{Part, PointValues};
 use crate::spec::quantity::PointQuantity;
@@ -31,6 +31,7 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
         PointQuantity::FrictionForce => contact_forces(part, Share::Tangential, world),
         PointQuantity::ContactTorque => moments(&contact_forces(part, Share::Total, world), part, world),
         PointQuantity::Penetration => return PointValues::Numbers(penetrations(part, world)),
+        PointQuantity::ContactResidual => return PointValues::Numbers(residuals(part, world)),
         PointQuantity::Slip => {
             return PointValues::Numbers(of_attachments(part, world, Attachments::slip_of));
         }

@@ -148,6 +148,7 @@ pub enum PointQuantity {
     FrictionForce,
     ContactTorque,
     Penetration,
+    ContactResidual,
     Slip,
     Torn,
 }
@@ -247,6 +248,7 @@ impl Quantity {
                     | PointQuantity::FrictionForce
                     | PointQuantity::ContactTorque
                     | PointQuantity::Penetration
+                    | PointQuantity::ContactResidual
             )
         )
     }
@@ -255,6 +257,7 @@ impl Quantity {
 const KINEMATICS: &str = "kinematics of points";
 const ATTACHMENT: &str = "own";
 const CONTACT: &str = "Wriggers 2006, §5";
+const COMPLEMENTARITY: &str = "Moreau 1988; Stewart & Trinkle 1996";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const ADAPTATION: &str = "Faure 2014, §6.4";
@@ -386,6 +389,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "how deep points are in what they touch, thickness included; zero where they do not",
         CONTACT,
         points("m", Number, Max, PointQuantity::Penetration),
+    ),
+    &entry(
+        "contact_residual",
+        "how far contacts whose forces are solved for are from complementarity: how deep they are, or how far what presses is apart",
+        COMPLEMENTARITY,
+        points("m", Number, Max, PointQuantity::ContactResidual),
     ),
     &entry(
         "slip",
