@@ -151,6 +151,8 @@ pub(crate) struct Bound {
     /// One step before, and where the step leads [m].
     before: Vec<Vec3>,
     places: Vec<Vec3>,
+    /// Where it led before contacts pushed last [m].
+    unpushed: Vec<Vec3>,
     /// Of points where the step starts, and where it leads [m/s].
     velocities: Vec<Vec3>,
     led: Vec<Vec3>,
@@ -411,18 +413,41 @@ impl Bound {
                 self.correct(step, structure)?;
             }
             let mut places = std::mem::take(&mut self.places);
+            self.unpushed.clone_from(&places);
             let moving = self.moving(step, structure, &ws.rows.positions);
             let improved = contacts.improve(&moving, next, &mut places);
             self.places = places;
             if !improved? {
                 break;
             }
+            self.yield_to_contacts(step, structure)?;
         }
         self.give(step.system, structure, next, &mut ws.row_force);
         let moving = self.moving(step, structure, &ws.rows.positions);
         let report = contacts.give(&moving, next, (&self.places, &mut ws.row_force));
         self.contacts = contacts;
         Ok(report)
+    }
+
+    /// Moves what contacts have pushed as relations let it move, by their gradients where the step starts. A push on one mass of a body would else bring
+    /// it as much farther as the body is heavier than it, where the body has no shape any more and what relations are off by says nothing of
+    /// the forces that they ask for.
+    fn yield_to_contacts(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+        if structure.relation_count() == 0 {
+            return Ok(());
+        }
+        let square = step.timestep * step.timestep;
+        self.change.clear();
+        for (entries, active) in structure.starts.windows(2).zip(&self.active) {
+            let moved: Vec3 = (entries[0]..entries[1])
+                .map(|entry| {
+                    let row = structure.rows[entry] as usize;
+                    self.gradients[entry] * (self.places[row] - self.unpushed[row])
+                })
+                .sum();
+            self.change.push(Mat3::from_diagonal(*active) * moved * (-1.0 / square));
+        }
+        self.apply(step, structure)
     }
 
     fn moving<'a>(&'a self, step: &'a Step, structure: &'a Structure, positions: &'a [Vec3]) -> Moving<'a> {
@@ -490,6 +515,12 @@ impl Bound {
             Mat3::from_diagonal(*active) * (Mat3::from_diagonal(*scale) * *off) / square
         };
         self.change.extend(active.map(scaled));
+        self.apply(step, structure)
+    }
+
+    /// Changes multipliers so that relations change by `h²` times what stands in their change, and where the step leads with them.
+    fn apply(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+        let square = step.timestep * step.timestep;
         structure.solve(&mut self.change)?;
         structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
         for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
@@ -728,6 +759,7 @@ impl Bound {
         let vectors = [
             &self.before,
             &self.places,
+            &self.unpushed,
             &self.velocities,
             &self.wanted,
             &self.off,

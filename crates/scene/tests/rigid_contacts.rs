@@ -210,6 +210,68 @@ quantity = "energy.dissipated"
     assert!((start[1][0] - end[1][0] - end[2][0]).abs() < 1e-12, "{start:?} {end:?}");
 }
 
+/// A rigid brick, joined by more rods than it needs, that strikes an inclined floor with one of its sixteen masses.
+const STRIKING: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, 0, -9.81]
+[systems.main]
+stepper = "t_simulation"
+[networks.brick.masses.balls]
+lattice = { spacing = 0.1, counts = [4, 2, 2] }
+mass = 0.1
+velocity = [0, 0, -8]
+[[networks.brick.constraints]]
+name = "rods"
+rod = { reach = 0.145 }
+[[networks.brick.constraints]]
+name = "ground"
+plane = { place = [0, 0, -0.08], normal = [0.2, 0.3, 1] }
+sense = "at_least"
+radius = 0.05
+friction = 0.3
+[probes.energy]
+quantity = "energy.total"
+[probes.residual]
+body = "brick"
+quantity = "contact_residual"
+"#;
+
+/// A mass that is stopped is pushed by what the whole body brings, in one step as far as its rods are long if they did not hold it: they do.
+#[test]
+fn bodies_that_strike_with_one_mass_stay_rigid() {
+    let scene = read(STRIKING, &[]).unwrap();
+    let (probes, start) = (scene.probes, scene.state.systems[0].q.clone());
+    let mut world = scene.model.start(scene.state);
+    let mut before = probes[0].measure(&mut world).numbers()[0];
+    for step in 0..60 {
+        world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
+        let places = &world.state().systems[0].q;
+        for a in 0..start.len() {
+            for b in 0..a {
+                let stretch = (places[a] - places[b]).length() - (start[a] - start[b]).length();
+                // rods hold to 1e-12 of coordinates of metres, and diagonals of the body to some such
+                assert!(stretch.abs() < 1e-10, "step {step}: {a} {b} {stretch}");
+            }
+        }
+        // 1e-7 of the 80 mm that a step would sink
+        assert!(contacts(&world).iter().all(|[gap, along, _]| *gap > -1e-8 && *along >= 0.0), "step {step}");
+        let residual = contacts(&world)
+            .iter()
+            .fold(0.0_f64, |worst, [gap, along, _]| worst.max(if *along > 0.0 { gap.abs() } else { -gap }));
+        assert!(residual < 1e-8, "step {step}: {residual}");
+        // of a plane, whose gap is a length
+        let probed = probes[1].measure(&mut world).numbers()[0];
+        assert!((probed - residual).abs() < 1e-15, "step {step}: {probed} {residual}");
+        let energy = probes[0].measure(&mut world).numbers()[0];
+        // the way of a step and where it ends differ by g h²/2 of 16 N: 8e-3 J in a step that turns what falls
+        assert!(energy < before + 8e-3, "step {step}: {before} {energy}");
+        before = energy;
+    }
+    assert!(before < 30.0, "{before}");
+}
+
 /// A wall that is led pushes what lies before it, and carries what sticks to it.
 #[test]
 fn led_walls_push_and_carry() {
