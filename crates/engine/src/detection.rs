@@ -93,7 +93,7 @@ fn detects(force: &dyn Force) -> bool {
 impl Detector {
     /// `None` where no force of the system detects anything.
     pub(crate) fn of(system: &System) -> Option<Self> {
-        if !system.forces.iter().any(|force| detects(force.as_ref())) {
+        if !system.detects() {
             return None;
         }
         let thread = ThreadPoolBuilder::new().num_threads(1).thread_name(|_| "collisions".to_owned()).build();
@@ -218,6 +218,11 @@ impl Detector {
 }
 
 impl System {
+    /// Whether a force of it has anything to detect.
+    pub(crate) fn detects(&self) -> bool {
+        self.forces.iter().any(|force| detects(force.as_ref()))
+    }
+
     /// Brings what was detected in the period before to the placed rows; where nothing was, as before the first period and after
     /// edits of forces, looks there.
     fn take_detected(&self, ws: &mut SystemWorkspace, state: &mut SystemState, around: &Surroundings) {

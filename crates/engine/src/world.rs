@@ -467,15 +467,15 @@ impl World {
         self.fit_detectors();
     }
 
-    /// A detector for each system, by the forces as they are: an edit may give a system the first that detects anything.
+    /// A detector for each system, by the forces as they are: an edit may give a system the first that detects anything, or take the last.
     fn fit_detectors(&mut self) {
         if self.model.detection == Detection::EveryStep {
             return;
         }
         for (system, detector) in self.model.systems.iter().zip(&mut self.workspace.detectors) {
             match detector {
-                Some(detector) => detector.fit(system),
-                None => *detector = Detector::of(system),
+                Some(detector) if system.detects() => detector.fit(system),
+                _ => *detector = Detector::of(system),
             }
         }
     }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use souple_engine::{Detected, Edit, HeldTool, Tool, World};
+use souple_math::Vec3;
 use souple_models::contact::{ContactLaw, ShapeContact, SurfaceContact};
 use souple_scene::{Scene, read_text};
 
@@ -73,4 +75,63 @@ fn starts_deep_inside_are_told() {
     let warnings = scene(&on_floor(0.45)).warnings;
     assert!(warnings.iter().any(|said| said.contains("9 points start deep inside")), "{warnings:?}");
     assert!(warnings.iter().any(|said| said.contains("by 0.4500 m")), "{warnings:?}");
+}
+
+/// A world in which nothing is detected any more, since its tool was let go of, goes on as one that begins with its state: nothing is looked for
+/// beside the steps of either.
+#[test]
+fn worlds_go_on_alike_after_tools_are_let_go_of() {
+    let text = r#"format = 1
+[world]
+period = "10 ms"
+collisions = "one_period_late"
+[systems.main]
+stepper = "symplectic_euler"
+[networks.n.masses.corners]
+positions = [[0, 0, 0], [0, 0, 1], [1, 0, 0]]
+velocity = [0, 0.1, 0]
+mass = 1
+[[networks.n.links]]
+law = { name = "spring", stiffness = 10 }
+of = ["corners"]
+chain = true
+"#;
+    let new = || {
+        let scene = scene(text);
+        scene.model.start(scene.state)
+    };
+    let steps = |world: &mut World| {
+        for _ in 0..3 {
+            world.step().unwrap();
+        }
+    };
+    let held = HeldTool {
+        places: vec![Vec3::ZERO, Vec3::Z, Vec3::X],
+        triangles: vec![[0, 1, 2]],
+        friction: 0.3,
+        mass: 0.03,
+        spring: 300.0,
+        damper: 6.0,
+        limit: 10.0,
+    };
+    let tool = Tool {
+        shape: "sphere".to_owned(),
+        values: vec![("radius".to_owned(), vec![0.1])],
+        place: Vec3::new(0.3, 0.5, 0.3),
+        stiffness: 100.0,
+        rows: vec![0, 1, 2],
+        held: Some(held),
+    };
+    let mut world = new();
+    world.edit(Edit::Touch { system: 0, hand: 0, tool }).unwrap();
+    steps(&mut world);
+    assert!(world.state().systems[0].detected != Detected::default());
+    world.edit(Edit::Release { system: 0, hand: 0 }).unwrap();
+    steps(&mut world);
+    assert_eq!(world.state().systems[0].detected, Detected::default());
+    let mut resumed = new();
+    resumed.resume_edited(world.state().clone(), world.log().to_vec()).unwrap();
+    steps(&mut world);
+    steps(&mut resumed);
+    assert!(world.state() == resumed.state());
 }
