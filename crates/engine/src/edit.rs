@@ -113,6 +113,7 @@ impl Edit {
     }
 
     pub(crate) fn apply(&self, model: &mut Model, state: &mut State) -> Result<(), EditError> {
+        let changes_forces = self.changes_forces(model);
         let (index, count) = (self.system(), model.systems.len());
         let system = model.systems.get_mut(index).ok_or(EditError::NoSystem { system: index, count })?;
         let time = state.period as f64 * model.period;
@@ -125,6 +126,10 @@ impl Edit {
         match self {
             Self::SetParameter { force: name, parameter, value, .. } => {
                 force_named(system, name)?.set_parameter(parameter, *value)?;
+                // a thickness decides how far is looked
+                if changes_forces {
+                    state.detected = Detected::default();
+                }
             }
             Self::Pin { block, .. } => {
                 check_block(*block)?;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use souple_engine::{Detection, Force, Span, State, Timeline, World};
+use souple_engine::{Detected, Detection, Edit, Force, Span, State, Timeline, World};
 use souple_math::Vec3;
 
 use super::shape::Sphere;
@@ -81,6 +81,34 @@ fn after_in_place(world: &mut World, periods: usize) -> &World {
         world.step().unwrap();
     }
     world
+}
+
+/// A contact that becomes thicker sees farther: what was found with the thickness before is not used, and the next period has what a search in
+/// every step finds.
+#[test]
+fn thicker_contacts_look_anew() {
+    let mut world = after(falling(Detection::OnePeriodLate), 5);
+    assert!(!world.state().systems[0].detected.positions.is_empty());
+    let mut in_time = falling(Detection::EveryStep);
+    in_time.resume(world.state().clone()).unwrap();
+    let before = world.state().systems[0].pairs.len();
+    let thicken = Edit::SetParameter {
+        system: 0,
+        force: "contact".to_owned(),
+        parameter: "thickness".to_owned(),
+        // from 0.19 above the other, seen from 0.3: with this also the corners of the far side
+        value: 1.5,
+    };
+    world.edit(thicken.clone()).unwrap();
+    in_time.edit(thicken).unwrap();
+    assert_eq!(world.state().systems[0].detected, Detected::default());
+    world.step().unwrap();
+    in_time.step().unwrap();
+    let keys = |world: &World| {
+        world.state().systems[0].pairs.iter().map(|pair| (pair.a, pair.b)).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&world), keys(&in_time));
+    assert!(keys(&world).len() > before);
 }
 
 /// A body that comes farther within two periods than a search looks makes its steps search anew: it does not pass, and what it does to
