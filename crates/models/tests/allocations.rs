@@ -10,7 +10,8 @@ use std::sync::Arc;
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
 use souple_engine::levels::{Division, Levels};
 use souple_engine::{
-    Constraint, Force, ImpactLaw, Kinematics, Mass, Model, Rows, State, Stepper, System, UnknownKind, World,
+    Constraint, Detection, Force, ImpactLaw, Kinematics, Mass, Model, Rows, State, Stepper, System,
+    UnknownKind, World,
 };
 use souple_formal::Formula;
 use souple_math::Vec3;
@@ -222,6 +223,7 @@ fn steps_of_rigid_balls() {
             law,
             held: Vec::new(),
             timestep: 2e-3,
+            detection: Detection::EveryStep,
         });
         let system = System {
             name: "main".into(),

@@ -1,6 +1,6 @@
 //! Contacts between masses whose forces are solved for: signs and friction, momenta and energy, what is refused.
 
-use souple_engine::{Force, World};
+use souple_engine::{Force, Pair, World};
 use souple_models::network::{RigidBalls, SidedConstraints};
 
 use crate::constraints::{read, started};
@@ -123,6 +123,142 @@ fn contacts_go_on_from_state() {
         world.state().clone()
     });
     assert!(world.state() == &threaded);
+}
+
+const LATE: &str = "world.collisions=\"one_period_late\"";
+
+/// A ball that flies at another.
+const FLYING: &str = r#"
+format = 1
+[world]
+period = "100 ms"
+gravity = [0, 0, 0]
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 100
+[networks.pair.masses.thrown]
+positions = [[0, 0, 0]]
+velocity = [3, 0, 0]
+mass = 1
+[networks.pair.masses.waiting]
+positions = [[1, 0, 0]]
+mass = 1
+[[networks.pair.constraints]]
+name = "balls"
+balls = { diameter = 0.1 }
+"#;
+
+/// A ball that comes three diameters within a period, looked for beside the steps, does not pass another: it shares its momentum with it.
+#[test]
+fn fast_balls_do_not_pass_when_looked_for_late() {
+    let speeds = |settings: &[&str]| {
+        let mut world = started(FLYING, settings);
+        (0..10).for_each(|_| {
+            world.step().unwrap();
+        });
+        [0, 1].map(|ball| world.state().systems[0].v[ball].x)
+    };
+    let (late, in_time) = (speeds(&[LATE]), speeds(&[]));
+    for ball in 0..2 {
+        // half the momentum each, to the 1e-7 of their approach that contacts are solved to
+        assert!((in_time[ball] - 1.5).abs() < 1e-6, "{in_time:?}");
+        // the same contact, listed earlier or later
+        assert!((late[ball] - in_time[ball]).abs() < 1e-12, "{late:?} {in_time:?}");
+    }
+}
+
+/// Where balls move little pairs found beside the steps are used, and forces are those of a search in every step.
+#[test]
+fn heaps_fall_alike_when_looked_for_late() {
+    let mut late = started(FALLING, &[LATE]);
+    let mut in_time = started(FALLING, &[]);
+    let mut used = 0;
+    for _ in 0..20 {
+        // what is left in State was not searched anew by a step, and is used by this period
+        used += usize::from(!late.state().systems[0].detected.positions.is_empty());
+        late.step().unwrap();
+        in_time.step().unwrap();
+        for [gap, along, _] in contacts(&late) {
+            assert!(gap > -1e-9 && along >= 0.0, "{gap} {along}");
+        }
+    }
+    assert!(used > 0);
+    for (a, b) in late.state().systems[0].q.iter().zip(&in_time.state().systems[0].q) {
+        // a hundred steps, each solved to 1e-7 of some millimetres
+        assert!((*a - *b).length() < 1e-7, "{a:?} {b:?}");
+    }
+}
+
+/// A ball that flies off far away makes no contacts of balls that rest apart.
+#[test]
+fn fast_balls_make_no_contacts_of_others() {
+    let text = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, 0, 0]
+[systems.main]
+stepper = "t_simulation"
+[networks.n.masses.resting]
+lattice = { origin = [0, 0, 0], spacing = 0.5, counts = [3, 3, 3] }
+mass = 1
+[networks.n.masses.flying]
+positions = [[100, 0, 0]]
+velocity = [100, 0, 0]
+mass = 1
+[[networks.n.constraints]]
+balls = { diameter = 0.1 }
+"#;
+    // 2 m in a step at twice its speed: four spacings
+    let mut world = started(text, &[]);
+    world.step().unwrap();
+    assert!(contacts(&world).is_empty());
+}
+
+/// Of two balls on one rod, of one ball twice and of two in the wrong order there is no pair; friction at centres turns pairs.
+#[test]
+fn pairs_of_balls_are_those_that_meet() {
+    for (friction, is_internal) in [("0.3", false), ("0", true)] {
+        let world = started(FALLING, &[&format!("networks.heap.constraints[1].friction={friction}")]);
+        let mut count = 0;
+        world.visit_forces(0, &mut |force, _| {
+            if !force.as_any().is::<RigidBalls>() {
+                return;
+            }
+            count += 1;
+            let accepted = [(0, 1), (11, 12), (1, 0), (3, 3), (12, 13), (13, 14), (0, 15)]
+                .map(|(a, b)| force.accepts_pair(&Pair::new(a, b, [0.0; 8])));
+            assert_eq!(accepted, [true, true, false, false, false, false, false]);
+            assert_eq!(force.declaration().internal, is_internal);
+        });
+        assert_eq!(count, 1);
+    }
+}
+
+/// A ball does not meet itself as one of two groups.
+#[test]
+fn groups_of_balls_that_share_masses_are_refused() {
+    let part = r#"
+[modules.two.masses.ends]
+positions = [[0, 0.3, 0], [0.2, 0.3, 0]]
+mass = 0.1
+[modules.two.ports]
+left = { kind = "M", of = "ends", mass = 0 }
+[networks.heap.modules.x]
+module = "two"
+translate = [1, 0, 0]
+"#;
+    let text = format!("{FALLING}{part}");
+    let between = |one: &str, other: &str| {
+        let setting = format!(
+            "networks.heap.constraints=[{{ balls = {{ diameter = 0.1 }}, of = [\"{one}\", \"{other}\"] }}]"
+        );
+        read(&text, &[&setting]).map(|_| ())
+    };
+    assert_eq!(between("balls", "x.left"), Ok(()));
+    assert_eq!(between("x", "x"), Ok(()));
+    let message = between("x", "x.left").unwrap_err();
+    assert!(message.contains("are in `x` and in `x.left`"), "{message}");
 }
 
 const BOUNCING: &str = r#"

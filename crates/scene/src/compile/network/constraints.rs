@@ -178,6 +178,14 @@ impl Making<'_> {
             [] => (all.clone(), all),
             _ => ends::groups(&self.spec.of, self.network)?,
         };
+        if first != second && first.start.max(second.start) < first.end.min(second.end) {
+            let [one, other] = [&self.spec.of[0], &self.spec.of[1]];
+            let (shared, last) = (first.start.max(second.start), first.end.min(second.end) - 1);
+            let message = format!(
+                "masses {shared} to {last} are in `{one}` and in `{other}`, and no ball meets itself"
+            );
+            return self.refuse(Code::Conflict, message, "groups that share no masses, or one group");
+        }
         let mut held = Vec::new();
         for spec in
             self.network.constraints.iter().filter(|spec| !spec.is_sided() && spec.augmented.is_none())
@@ -214,6 +222,7 @@ impl Making<'_> {
             law: self.spec.law,
             held,
             timestep,
+            detection: self.draft.spec.world.detection,
         }))
     }
 
