@@ -71,6 +71,25 @@ detect = "triangles"
     assert_eq!(warnings(&format!("{}{touched}", late("one_period_late"))), Vec::<String>::new());
 }
 
+/// Crowds that State lists are old as soon as a mass moves, and make all else that was found beside the steps so: that is told. Crowds that are
+/// no pairs leave the rest as it is.
+#[test]
+fn crowds_that_are_never_late_are_told() {
+    let said = |stepper: &str, kind: &str| -> Vec<String> {
+        let text = format!(
+            "format = 1\n[world]\nperiod = \"1 ms\"\ncollisions = \"{kind}\"\n[systems.main]\nstepper = \"{stepper}\"\n\
+             [networks.n.masses.nail]\npositions = [[0, 0, 0]]\nmass = 1\nfixed = true\n\
+             [networks.n.masses.bob]\npositions = [[0.09, 0, 0]]\nmass = 1\n\
+             [[networks.n.crowds]]\nname = \"touch\"\nlaw = {{ name = \"ball\", threshold = 0.1, stiffness = 100 }}\n"
+        );
+        warnings(&text).into_iter().filter(|warning| warning.contains("searches the crowd")).collect()
+    };
+    let told = said("backward_euler", "one_period_late");
+    assert!(told.len() == 1 && told[0].contains("scene.toml:4:") && told[0].contains("`main`"), "{told:?}");
+    assert_eq!(said("t_simulation", "one_period_late"), Vec::<String>::new());
+    assert_eq!(said("backward_euler", "every_step"), Vec::<String>::new());
+}
+
 /// A motion that is elsewhere at the start tears, and is told; gravity that is not finite then is refused.
 #[test]
 fn starts_are_at_rest() {

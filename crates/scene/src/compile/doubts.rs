@@ -1,10 +1,11 @@
 //! What is no fault but hardly meant: magnitudes that look like a slip of units, materials that lock.
 
 use souple_engine::linear::Method;
-use souple_engine::{Detection, System};
+use souple_engine::{Detection, Force, System};
 use souple_mesh::USUAL_SIZES;
 use souple_mesh::repair::diagnose;
 use souple_models::materials::{Build, Material};
+use souple_models::network::Crowd;
 use souple_table::{Value, counted, four_digits, readable};
 
 use super::bodies::Placed;
@@ -27,12 +28,28 @@ const SIZES: [f64; 2] = [1e-5, 500.0];
 /// their cells have volumes to keep. `ν = 0.475` gives 19 (Hughes 2000, §4.2).
 const LOCKING: f64 = 19.0;
 
-/// Warns of a scene that asks for late detection of collisions, and has none to detect.
+/// Warns of a scene that asks for late detection of collisions, and has none to detect, or none that could be late.
 pub fn warn_of_detection(draft: &mut Draft) {
     let world = &draft.spec.world;
+    if world.detection != Detection::OnePeriodLate {
+        return;
+    }
+    let place = draft.place(&world.detection_site);
+    // what has moved at all since a crowd was listed makes its list old, and with it all lists of its system
+    for system in &draft.systems {
+        let listed =
+            |force: &&Box<dyn Force>| force.as_any().is::<Crowd>() && force.declaration().changing_pattern;
+        let Some(crowd) = system.forces.iter().find(listed) else { continue };
+        draft.warnings.push(format!(
+            "{place}: nothing of system `{}` is used that is found beside its steps: its stepper `{}` searches the crowd `{}` anew in every step, and all else with it; \
+             `\"every_step\"` searches once, and `t_simulation` and explicit steppers leave crowds out of it",
+            system.name,
+            system.stepper.name(),
+            crowd.name()
+        ));
+    }
     let detects = |system: &System| system.has_pairs() || system.holds();
-    if world.detection == Detection::OnePeriodLate && !draft.systems.iter().any(detects) {
-        let place = draft.place(&world.detection_site);
+    if !draft.systems.iter().any(detects) {
         draft.warnings.push(format!(
             "{place}: nothing is detected here beside the steps: points of bodies feel shapes in every step; `detect = \"triangles\"` and contacts between bodies have something to look for"
         ));
