@@ -164,20 +164,14 @@ fn letters_of(place: usize) -> String {
 
 /// Pairs of what lies at -1 and at 1 of an axis, where earlier axes are sums and differences, with the difference and sum of each.
 fn stage(axis: usize) -> Vec<[String; 4]> {
-    let of_others = (0..4).map(|index| {
-        let letters = LETTERS.map(|own| {
-            (0..3)
-                .map(|at| {
-                    let bit = index >> usize::from(at == others(axis)[1]) & 1;
-                    match at {
-                        at if at == axis => own,
-                        at if at < axis => LETTERS[2 + bit],
-                        _ => LETTERS[bit],
-                    }
-                })
-                .collect::<String>()
-        });
-        letters
-    });
-    of_others.collect()
+    let letter = |at: usize, index: usize, own: char| {
+        let bit = index >> usize::from(at == others(axis)[1]) & 1;
+        match at {
+            at if at == axis => own,
+            at if at < axis => LETTERS[2 + bit],
+            _ => LETTERS[bit],
+        }
+    };
+    let of_others = |index: usize| LETTERS.map(|own| (0..3).map(|at| letter(at, index, own)).collect());
+    (0..4).map(of_others).collect()
 }

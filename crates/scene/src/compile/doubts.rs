@@ -37,9 +37,8 @@ pub fn warn_of_detection(draft: &mut Draft) {
     let place = draft.place(&world.detection_site);
     // what has moved at all since a crowd was listed makes its list old, and with it all lists of its system
     for system in &draft.systems {
-        let listed =
-            |force: &&Box<dyn Force>| force.as_any().is::<Crowd>() && force.declaration().changing_pattern;
-        let Some(crowd) = system.forces.iter().find(listed) else { continue };
+        let listed = |force: &dyn Force| force.as_any().is::<Crowd>() && force.declaration().changing_pattern;
+        let Some(crowd) = system.forces.iter().find(|force| listed(force.as_ref())) else { continue };
         draft.warnings.push(format!(
             "{place}: nothing of system `{}` is used that is found beside its steps: its stepper `{}` searches the crowd `{}` anew in every step, and all else with it; \
              `\"every_step\"` searches once, and `t_simulation` and explicit steppers leave crowds out of it",

@@ -188,7 +188,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     }
     if let (Emit::Kernel, Some(folder)) = (arguments.emit, &arguments.out) {
         let message = "a kernel has no fragments: it is one text, on standard output".to_owned();
-        return Err(Refusal::request("out", &folder.display().to_string(), "no `--out`", message));
+        return Err(Refusal::request("out", folder.display().to_string(), "no `--out`", message));
     }
     if arguments.emit == Emit::Kernel {
         let written = souple_models::derive::element_kernel(&name, &text, &law, kind, (rule, map));
