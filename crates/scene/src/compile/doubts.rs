@@ -40,7 +40,7 @@ pub fn warn_of_detection(draft: &mut Draft) {
         let listed = |force: &dyn Force| force.as_any().is::<Crowd>() && force.declaration().changing_pattern;
         let Some(crowd) = system.forces.iter().find(|force| listed(force.as_ref())) else { continue };
         draft.warnings.push(format!(
-            "{place}: nothing of system `{}` is used that is found beside its steps: its stepper `{}` searches the crowd `{}` anew in every step, and all else with it; \
+            "{place}: no contact of system `{}` is used that is found beside its steps: its stepper `{}` searches the crowd `{}` anew in every step, and all else with it; \
              `\"every_step\"` searches once, and `t_simulation` and explicit steppers leave crowds out of it",
             system.name,
             system.stepper.name(),

@@ -35,7 +35,9 @@ use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
 use crate::spec::control::Driven;
-use crate::spec::network::{CrowdSpec, FrictionSpec, FusibleSpec, LinkTable, MassGroup, Network};
+use crate::spec::network::{
+    ConstraintKind, ConstraintSpec, CrowdSpec, FrictionSpec, FusibleSpec, LinkTable, MassGroup, Network,
+};
 use crate::spec::world::SystemSpec;
 
 /// Which masses links of one law join, and how long they are at rest.
@@ -458,8 +460,8 @@ fn friction_of(spec: &FrictionSpec, timestep: f64) -> Friction {
     }
 }
 
-/// Half the distance at which balls of a group keep from each other, or from those of another group, for each mass [m];
-/// zero where nothing keeps off. Empty of a body that is no network.
+/// Half the distance at which balls of a group keep from each other, or from those of another group, for each mass [m], by a law or by a
+/// constraint; else the radius by which planes keep off; zero where nothing does. Empty of a body that is no network.
 pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
     let Some(network) = &body.spec.network else { return Vec::new() };
     let timestep = spec.world.period / f64::from(spec.systems[body.system].steps_per_period);
@@ -477,12 +479,27 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
         let group = network.numbers_of(group).unwrap_or(0..0);
         crowd.of.is_empty() || crowd.of.iter().any(|name| holds(name, &group))
     };
+    let rigid_radius = |group: &MassGroup| {
+        let own = network.numbers_of(&group.name).unwrap_or(0..0);
+        let of = |spec: &&ConstraintSpec| spec.of.is_empty() || spec.of.iter().any(|name| holds(name, &own));
+        let of_balls = |spec: &ConstraintSpec| match spec.kind {
+            Some(ConstraintKind::Balls(diameter)) => Some(0.5 * diameter),
+            _ => None,
+        };
+        let of_plane = |spec: &ConstraintSpec| {
+            matches!(spec.kind, Some(ConstraintKind::Plane(..))).then_some(spec.radius)
+        };
+        let constraints = || network.constraints.iter().filter(of);
+        let by_balls = constraints().find_map(of_balls);
+        by_balls.or_else(|| constraints().filter_map(of_plane).max_by(f64::total_cmp)).unwrap_or(0.0)
+    };
     // those of one group among themselves tell more than those with another
     let radius = |group: &MassGroup| {
         let of = |crowd: &&CrowdSpec| is_in(crowd, &group.name);
         let alone = network.crowds.iter().filter(of).find(|crowd| crowd.of.len() < 2);
         let found = alone.or_else(|| network.crowds.iter().find(of));
-        found.and_then(distance).map_or(0.0, |distance| 0.5 * distance)
+        let by_law = found.and_then(distance).map(|distance| 0.5 * distance);
+        by_law.unwrap_or_else(|| rigid_radius(group))
     };
     let each = network.masses.iter().map(|group| (radius(group), group.places.count() as usize));
     each.flat_map(|(radius, count)| std::iter::repeat_n(radius, count)).collect()
