@@ -97,22 +97,22 @@ fn modes_of_turning_worlds_are_coupled() {
     let tip = |modes: &str| {
         let settings = [
             "systems.main.stepper=\"rk4\"",
-            "world.period=\"0.2 ms\"",
-            "world.frame={ rotation = [\"3 * t\", 0, 0] }",
+            "world.period=\"0.1 ms\"",
+            "world.frame={ rotation = { formula = [\"3 * t\", \"0\", \"0\"] } }",
             "bodies.beam.mesh={ generate = \"bar\", size = [1, 0.04, 0.04], cells = [4, 1, 1], element = \"hex20\" }",
             &format!("bodies.beam.{modes}"),
         ];
         let mut world = world("modal_cantilever", &settings);
-        (0..1500).for_each(|_| world.step().expect("a step"));
+        (0..2000).for_each(|_| world.step().expect("a step"));
         world.with_system(0, |system, state, _, ws| {
             system.place_rows(&state.q, &state.v, 0.0, &mut ws.rows);
             ws.rows.positions.iter().copied().fold(Vec3::ZERO, |far, x| if x.x > far.x { x } else { far })
         })
     };
     let (few, all) = (tip("modes.count=6"), tip("modes="));
-    let off =
-        (few - all).length() / (all - Vec3::new(1.0, all.y.signum() * 0.02, all.z.signum() * 0.02)).length();
-    assert!(off < 0.05, "{few:?} for {all:?}");
+    // modes above the third pair have 0.14 % of a deflection by the tip
+    let deflection = (all.y.abs() - 0.02).abs().max((all.z.abs() - 0.02).abs());
+    assert!((few - all).length() < 2e-3 * deflection && deflection > 1e-3, "{few:?} for {all:?}");
 }
 
 /// What cannot be is said with what would be accepted.
