@@ -671,14 +671,6 @@ impl ContactSystem {
         (places, row_force): (&[Vec3], &mut [Vec3]),
     ) -> StepReport {
         let system = moving.step.system;
-        for (index, force) in system.forces.iter().enumerate() {
-            let Some(unilateral) = force.unilateral() else { continue };
-            let pairs = pairs_of(&next.pairs, index);
-            let (memory, pairs) = (&mut next.memory[system.memory_range(index)], &mut next.pairs[pairs]);
-            for number in 0..unilateral.contact_count(pairs) {
-                unilateral.set_force(number, memory, pairs, Vec3::ZERO);
-            }
-        }
         for contact in &self.contacts {
             let (index, number) = contact.of;
             let Some(unilateral) = system.forces[index].unilateral() else { continue };

@@ -2,7 +2,7 @@
 //! back to both ends.
 
 #[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::__m256i;
+use std::arch::x86_64::{__m256d, __m256i};
 
 use pulp::Simd;
 
@@ -21,17 +21,8 @@ impl<S: Simd> Vec3<Lanes<S>> {
         debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
         #[cfg(target_arch = "x86_64")]
         if let Some(v3) = four_wide(&simd) {
-            let three: __m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
-            // SAFETY: promised by the caller for every lane; the mask leaves out what stands behind the vector
-            let row = |lane: usize| unsafe {
-                let place = |indices: &[u32]| {
-                    values.as_ptr().add(*indices.get_unchecked(lane) as usize).cast::<f64>()
-                };
-                v3.avx._mm256_sub_pd(
-                    v3.avx._mm256_maskload_pd(place(to), three),
-                    v3.avx._mm256_maskload_pd(place(from), three),
-                )
-            };
+            // SAFETY: promised by the caller for every lane
+            let row = |lane: usize| unsafe { difference(v3, values, to, from, lane) };
             let (a, b, c, d) = (row(0), row(1), row(2), row(3));
             // a transposition: (a.x b.x c.x d.x), then y, then z
             let (even, odd) = (v3.avx._mm256_unpacklo_pd(a, b), v3.avx._mm256_unpacklo_pd(c, d));
@@ -44,17 +35,8 @@ impl<S: Simd> Vec3<Lanes<S>> {
         }
         #[cfg(target_arch = "x86_64")]
         if let Some(v4) = eight_wide(&simd) {
-            let three: __m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
-            // SAFETY: promised by the caller for every lane; the mask leaves out what stands behind the vector
-            let row = |lane: usize| unsafe {
-                let place = |indices: &[u32]| {
-                    values.as_ptr().add(*indices.get_unchecked(lane) as usize).cast::<f64>()
-                };
-                v4.avx._mm256_sub_pd(
-                    v4.avx._mm256_maskload_pd(place(to), three),
-                    v4.avx._mm256_maskload_pd(place(from), three),
-                )
-            };
+            // SAFETY: promised by the caller for every lane
+            let row = |lane: usize| unsafe { difference(v4, values, to, from, lane) };
             let rows = [row(0), row(1), row(2), row(3), row(4), row(5), row(6), row(7)];
             let [x, y, z] = columns_of_eight(v4, rows);
             return Self::new(
@@ -254,6 +236,25 @@ impl<S: Simd> Lanes<S> {
                 *sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) -= number;
             }
         }
+    }
+}
+
+/// `values[to[lane]] - values[from[lane]]`, and zero behind it.
+///
+/// # Safety
+/// Both lists have the lane, and their indices there are below the length of `values`.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+unsafe fn difference(v3: &pulp::x86::V3, values: &[Vec3], to: &[u32], from: &[u32], lane: usize) -> __m256d {
+    let three: __m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
+    // SAFETY: promised by the caller; the mask leaves out what stands behind the vectors
+    unsafe {
+        let place =
+            |indices: &[u32]| values.as_ptr().add(*indices.get_unchecked(lane) as usize).cast::<f64>();
+        v3.avx._mm256_sub_pd(
+            v3.avx._mm256_maskload_pd(place(to), three),
+            v3.avx._mm256_maskload_pd(place(from), three),
+        )
     }
 }
 

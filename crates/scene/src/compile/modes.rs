@@ -3,17 +3,16 @@
 use std::ops::Range;
 
 use souple_engine::modes::{Modes, ModesError, Settings, lowest};
-use souple_engine::{
-    Constraint, DerivedRow, Feedback, Force, Kinematics, Mass, Model, State, System, UnknownKind,
-};
+use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, System, UnknownKind};
 use souple_math::{Mat3, Vec3};
 use souple_models::materials::Material;
 use souple_models::reduced::{Coupling, ModalBasis, ModalDamping, ModalStiffness};
-use souple_models::solids::{FlatCell, Section, SolidDescription, SolidForce};
+use souple_models::solids::{FlatCell, SolidDescription, SolidForce};
 
 use super::Draft;
 use super::bodies::{Placed, add_point_mass, solid_name};
-use crate::diagnostic::{Code, Site};
+use super::reduced::{Moving, add_point};
+use crate::diagnostic::Code;
 use crate::spec::modes::ModesSpec;
 
 /// The modes of a body and the frame that they are seen from.
@@ -64,11 +63,7 @@ impl PlacedModes {
     /// Appends the points of the mesh to the rows.
     pub fn add_points(&self, points: usize, kinematics: &mut Kinematics) {
         for point in 0..points {
-            let weights = (self.first_row as u32..).zip(self.basis.weights(point));
-            let parents = weights.filter(|(_, weight)| *weight != 0.0).collect();
-            let row = DerivedRow { parents, feedback: Feedback::Transpose };
-            // weights are finite, and the frame comes before points
-            kinematics.add_derived_row(row).unwrap_or_else(|error| unreachable!("{error}"));
+            add_point(self.first_row, self.basis.weights(point), kinematics);
         }
     }
 
@@ -137,7 +132,10 @@ impl PlacedModes {
 /// Finds the modes of a body; `None` where that was refused.
 pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     let spec = body.spec.modes.as_ref()?;
-    if !is_alone(draft, body, spec) || body.materials.all.is_empty() {
+    let moving =
+        Moving { key: "modes", site: &spec.site, knows_no: "moves as a sum of modes, which know no" };
+    let polynomial = body.spec.polynomial.as_ref().map(|of| &of.site);
+    if !moving.is_alone(draft, body, &[("polynomial", polynomial)]) || body.materials.all.is_empty() {
         return None;
     }
     let refuse = |message: String, expected: &str| {
@@ -192,36 +190,6 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     let swings_alone = is_held && draft.spec.world.frame.is_none();
     let coupling = if swings_alone { Coupling::OfOneMode } else { Coupling::All };
     Some(PlacedModes { basis, first_row: 0, held, coupling })
-}
-
-/// Whether a body has nothing that modes know no way of; what it has is reported.
-fn is_alone(draft: &Draft, body: &Placed, spec: &ModesSpec) -> bool {
-    let own = body.spec;
-    let site = |site: Option<&Site>| site.unwrap_or(&spec.site).clone();
-    let others = [
-        ("frames", own.frames.is_some(), site(own.frames.as_ref().map(|of| &of.site))),
-        ("polynomial", own.polynomial.is_some(), site(own.polynomial.as_ref().map(|of| &of.site))),
-        ("levels", own.levels.is_some(), site(None)),
-        ("octree", own.octree.is_some(), site(None)),
-        ("section", own.section() != Section::Solid, site(own.section.as_ref().map(|of| &of.site))),
-        ("adapt", own.adapt.is_some(), site(own.adapt.as_ref().map(|of| &of.site))),
-        ("formulation", own.formulation.is_some(), site(own.formulation.as_ref().map(|of| &of.site))),
-        ("start", own.start.is_some(), site(own.start.as_ref().map(|of| &of.site))),
-        ("damping.viscosity", own.damping.viscosity > 0.0, site(None)),
-        ("damping.neighbour_friction", own.damping.neighbour_friction > 0.0, site(None)),
-    ];
-    let mut is_alone = true;
-    for (key, _, site) in others.into_iter().filter(|(_, is_there, _)| *is_there) {
-        let message = format!("body `{}` moves as a sum of modes, which know no `{key}`", own.name);
-        draft.log.add(
-            Code::Conflict,
-            &site,
-            message,
-            "a body of volumes with its material and `modes` alone",
-        );
-        is_alone = false;
-    }
-    is_alone
 }
 
 /// The mass of the points of a body and its centre; `None` where there is none.

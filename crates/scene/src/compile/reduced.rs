@@ -2,14 +2,15 @@
 
 use std::ops::Range;
 
-use souple_engine::{Force, Kinematics, Mass, UnknownKind};
+use souple_engine::{DerivedRow, Feedback, Force, Kinematics, Mass, UnknownKind};
 use souple_math::Vec3;
-use souple_models::solids::FlatCell;
+use souple_models::solids::{FlatCell, Section};
 
 use super::Draft;
 use super::bodies::{Placed, add_point_mass};
 use super::modes::{self, PlacedModes};
 use super::polynomial::{self, PlacedPolynomial};
+use crate::diagnostic::{Code, Site};
 
 /// What a body moves in.
 pub enum PlacedReduced {
@@ -108,5 +109,51 @@ impl PlacedReduced {
             Self::Modes(modes) => modes.start_velocity(kinematics, motion, v),
             Self::Polynomial(polynomial) => polynomial.start_velocity(kinematics, motion, v),
         }
+    }
+}
+
+/// Appends a point of the mesh to the rows, of these weights over those of the unknowns from `first_row` on.
+pub fn add_point(first_row: usize, weights: impl IntoIterator<Item = f64>, kinematics: &mut Kinematics) {
+    let parents = (first_row as u32..).zip(weights).filter(|(_, weight)| *weight != 0.0).collect();
+    let row = DerivedRow { parents, feedback: Feedback::Transpose };
+    // weights are finite, and unknowns come before points
+    kinematics.add_derived_row(row).unwrap_or_else(|error| unreachable!("{error}"));
+}
+
+/// What a body is told to move in, as messages have it.
+pub struct Moving<'a> {
+    pub key: &'a str,
+    pub site: &'a Site,
+    pub knows_no: &'a str,
+}
+
+impl Moving<'_> {
+    /// Whether a body has nothing beside, of what no such body knows and of its `own`, each with its place where it is there; what it has is
+    /// reported.
+    pub fn is_alone(&self, draft: &Draft, body: &Placed, own: &[(&str, Option<&Site>)]) -> bool {
+        let spec = body.spec;
+        let here = |is_there: bool| is_there.then_some(self.site);
+        let section = (spec.section() != Section::Solid)
+            .then(|| spec.section.as_ref().map_or(self.site, |section| &section.site));
+        let others = [
+            ("frames", spec.frames.as_ref().map(|of| &of.site)),
+            ("levels", here(spec.levels.is_some())),
+            ("octree", here(spec.octree.is_some())),
+            ("section", section),
+            ("adapt", spec.adapt.as_ref().map(|of| &of.site)),
+            ("formulation", spec.formulation.as_ref().map(|of| &of.site)),
+            ("start", spec.start.as_ref().map(|of| &of.site)),
+            ("damping.viscosity", here(spec.damping.viscosity > 0.0)),
+            ("damping.neighbour_friction", here(spec.damping.neighbour_friction > 0.0)),
+        ];
+        let mut is_alone = true;
+        for (key, site) in others.iter().chain(own) {
+            let Some(site) = site else { continue };
+            let message = format!("body `{}` {} `{key}`", spec.name, self.knows_no);
+            let expected = format!("a body of volumes with its material and `{}` alone", self.key);
+            draft.log.add(Code::Conflict, site, message, &expected);
+            is_alone = false;
+        }
+        is_alone
     }
 }
