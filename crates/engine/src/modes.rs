@@ -1,8 +1,10 @@
 //! Natural frequencies of a system about where it stands: `K φ = ω² M φ`, constrained directions at rest.
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::modes::lowest_modes;
 pub use souple_solve::modes::{Modes, Settings};
+pub use souple_solve::ritz::RitzPairs;
+use souple_solve::ritz::{pairs_within, vanishing};
 use souple_solve::{BlockMatrix, SolveError};
 
 use crate::implicit::Rates;
@@ -23,6 +25,11 @@ pub enum ModesError {
 }
 
 impl ModesError {
+    /// More modes asked for than there are.
+    pub fn too_many(wanted: usize, available: usize) -> Self {
+        Self::Solve(SolveError::TooManyModes { wanted, available })
+    }
+
     /// How many modes there are, where more were asked for.
     pub fn available(&self) -> Option<usize> {
         match self {
@@ -44,6 +51,38 @@ pub fn lowest(
     ws: &mut SystemWorkspace,
     settings: &Settings,
 ) -> Result<Modes, ModesError> {
+    let mut positions = Vec::new();
+    system.block_positions_into(&ws.rows.positions, &mut positions);
+    let (stiffness, mass) = matrices(system, state, around, ws)?;
+    Ok(lowest_modes(stiffness, &mass, Some(&positions), settings)?)
+}
+
+/// Modes within the span of `fields` over velocity blocks, of what in it vanishes where the system is held and is orthogonal to the fields
+/// `apart_from` in the norm of the mass.
+///
+/// # Errors
+/// Points that relations bind, or fields that do not fit.
+pub fn within(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    fields: &[Vec<Vec3>],
+    apart_from: &[Vec<Vec3>],
+) -> Result<RitzPairs, ModesError> {
+    let free: Vec<(usize, Mat3)> =
+        system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free)).collect();
+    let (stiffness, mass) = matrices(system, state, around, ws)?;
+    Ok(pairs_within(stiffness, &mass, &vanishing(fields, &free), apart_from)?)
+}
+
+/// Stiffness and mass about the placed rows. Held directions have no mass, and so take no part.
+fn matrices<'a>(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &'a mut SystemWorkspace,
+) -> Result<(&'a BlockMatrix, BlockMatrix), ModesError> {
     if let Some(force) =
         system.forces.iter().find(|force| force.binding().is_some() || force.unilateral().is_some())
     {
@@ -64,10 +103,7 @@ pub fn lowest(
     let stiffness = tangent.assemble(&at, scratches);
     let mut mass = BlockMatrix::zeros(stiffness.pattern().clone());
     add_generalised_mass(system, &state.q, &mut mass);
-    // held directions have no mass, and so take no part
     let held = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
     mass.constrain_blocks(held, 0.0)?;
-    let mut positions = Vec::new();
-    system.block_positions_into(&rows.positions, &mut positions);
-    Ok(lowest_modes(stiffness, &mass, Some(&positions), settings)?)
+    Ok((stiffness, mass))
 }

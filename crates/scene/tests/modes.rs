@@ -140,3 +140,69 @@ fn faults_of_modes_are_said_with_what_to_change() {
     told(&["bodies.beam.damping.viscosity=1"], &["know no `damping.viscosity`"]);
     told(&["bodies.beam.formulation.name=\"tensor_mass\""], &["know no `formulation`"]);
 }
+
+/// Modes within polynomials have frequencies above those of the mesh, the nearer the higher their degree, and move all points by such: a
+/// quadratic one of a beam has its middle a quarter as far as its end.
+#[test]
+fn modes_within_polynomials_bound_those_of_the_mesh() {
+    let first = |modes: &str| {
+        let scene = read("modal_cantilever", &[modes]).unwrap_or_else(|errors| panic!("{errors}"));
+        scene.bodies[0].reduced.as_ref().and_then(|reduced| reduced.hertz.as_ref()).expect("modes")[0]
+    };
+    let of_mesh = first("bodies.beam.modes.count=2");
+    let within =
+        [5, 4, 3, 2].map(|degree| first(&format!("bodies.beam.modes={{ count = 2, degree = {degree} }}")));
+    // bounds to rounding of the factor of the mesh's stiffness
+    assert!(within[0] > of_mesh * (1.0 - 1e-9) && within.is_sorted(), "{of_mesh}: {within:?}");
+    assert!(within[0] / of_mesh < 1.0 + 1e-3, "{of_mesh}: {within:?}");
+
+    let settings = ["bodies.beam.modes={ count = 2, degree = 2 }"];
+    let scene = read("modal_cantilever", &settings).unwrap_or_else(|errors| panic!("{errors}"));
+    let (rest, first_row) = (scene.bodies[0].mesh.points.clone(), scene.bodies[0].rows.start);
+    let mut world = world("modal_cantilever", &settings);
+    world.step().expect("a step");
+    let moved: Vec<Vec3> = world.with_system(0, |system, state, _, ws| {
+        system.place_rows(&state.q, &state.v, 0.0, &mut ws.rows);
+        ws.rows.positions[first_row..first_row + rest.len()].to_vec()
+    });
+    // along an edge: a x + b x² of the clamped end, by the values at the middle and the end
+    let along = |x: f64| {
+        let on_edge = |p: &Vec3| (p.x - x).abs() + (p.y - rest[0].y).abs() + (p.z - rest[0].z).abs() < 1e-9;
+        let point = rest.iter().position(on_edge).expect("a point");
+        moved[point].y - rest[point].y
+    };
+    let [half, whole] = [along(0.5), along(1.0)];
+    let (a, b) = (4.0 * half - whole, 2.0 * whole - 4.0 * half);
+    assert!(whole > 1e-3);
+    for x in (0..=16).map(|cell| f64::from(cell) / 16.0) {
+        // rounding of what vanishes at the clamp, squares of which are told from nothing
+        assert!((along(x) - x * (a + b * x)).abs() < 1e-7 * whole, "at {x}");
+    }
+}
+
+/// A deformable primitive knows its natural modes apart from what deforms it as a whole, which no pin may hold and which is told once.
+#[test]
+fn deformations_of_the_whole_are_beside_modes() {
+    let scene = read("deformable_primitive", &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let reduced = scene.bodies[0].reduced.as_ref().expect("few unknowns");
+    assert_eq!(reduced.hertz.as_ref().map(Vec::len), Some(6));
+    // a frame of four rows, three for each of six modes and six deformations
+    assert_eq!(reduced.rows.len(), 4 + 3 * 12);
+    let told = |name: &str, override_: &str, words: &[&str]| {
+        let said = read(name, &[override_]).map(|_| ()).expect_err("a fault");
+        words.iter().for_each(|word| assert!(said.contains(word), "{word}: {said}"));
+    };
+    let of = |global: &str| format!("bodies.primitive.modes.global=[{global}]");
+    told("deformable_primitive", &of("\"stretch\""), &["`stretch` is no deformation", "stretch_x"]);
+    told("deformable_primitive", &of("\"bend_xx\""), &["`bend_xx` is no deformation"]);
+    told("deformable_primitive", &of("\"shear_xz\", \"shear_xz\""), &["`shear_xz` is there twice"]);
+    told("deformable_primitive", "bodies.primitive.modes.global_stiffness=0", &["global_stiffness"]);
+    told("deformable_primitive", "bodies.primitive.modes.degree=6", &["degree"]);
+    let held = "bodies.beam.modes={ count = 2, global = [\"stretch_x\"] }";
+    told("modal_cantilever", held, &["is held", "without pins"]);
+    told(
+        "modal_cantilever",
+        "bodies.beam.modes={ count = 7, degree = 1 }",
+        &["has 3 modes, not 7", "a higher `degree`"],
+    );
+}

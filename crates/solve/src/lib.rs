@@ -11,6 +11,7 @@ mod error;
 mod kernel;
 pub mod krylov;
 mod lu;
+mod mass_basis;
 mod matrix;
 pub mod modes;
 pub mod newton;
@@ -20,6 +21,7 @@ mod partition;
 mod pattern;
 pub mod precondition;
 pub mod reduce;
+pub mod ritz;
 pub mod solvers;
 mod spare;
 

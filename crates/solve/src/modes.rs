@@ -6,6 +6,7 @@
 use souple_math::Vec3;
 
 use crate::direct::Factor;
+use crate::mass_basis::{MassBasis, combination, length_of};
 use crate::{BlockMatrix, DirectSolver, LinearOperator, SolveError, dense, reduce};
 
 /// Blocks of the subspace between restarts.
@@ -114,8 +115,7 @@ pub fn lowest_modes(
 struct Subspace<'a> {
     solver: &'a DirectSolver,
     mass: &'a BlockMatrix,
-    basis: Vec<Vec<Vec3>>,
-    weighted: Vec<Vec<Vec3>>,
+    basis: MassBasis<'a>,
     images: Vec<Vec<Vec3>>,
     block_count: usize,
 }
@@ -131,12 +131,11 @@ struct Ritz {
 
 impl<'a> Subspace<'a> {
     fn new(solver: &'a DirectSolver, mass: &'a BlockMatrix, block_count: usize) -> Self {
-        Self { solver, mass, basis: Vec::new(), weighted: Vec::new(), images: Vec::new(), block_count }
+        Self { solver, mass, basis: MassBasis::new(mass), images: Vec::new(), block_count }
     }
 
     fn clear(&mut self) {
         self.basis.clear();
-        self.weighted.clear();
         self.images.clear();
     }
 
@@ -151,33 +150,15 @@ impl<'a> Subspace<'a> {
     /// Adds what is new in `vectors`; returns how many were.
     fn extend(&mut self, vectors: Vec<Vec<Vec3>>, largest: usize) -> Result<usize, SolveError> {
         let before = self.len();
-        for mut v in vectors {
+        for v in vectors {
             if self.len() == largest {
                 break;
             }
-            let mut weighted = vec![Vec3::ZERO; self.block_count];
-            self.mass.apply(&v, &mut weighted);
-            let length = reduce::dot(&v, &weighted).max(0.0).sqrt();
-            // v −= V (Vᵀ M v), twice against rounding
-            for _ in 0..2 {
-                for (basis, basis_weighted) in self.basis.iter().zip(&self.weighted) {
-                    let projection = reduce::dot(basis_weighted, &v);
-                    reduce::add_scaled(&mut v, -projection, basis);
-                }
+            if self.basis.add(v) {
+                let mut image = self.basis.weighted[self.len() - 1].clone();
+                self.solver.solve(&mut image)?;
+                self.images.push(image);
             }
-            self.mass.apply(&v, &mut weighted);
-            let rest = length_of(reduce::dot(&v, &weighted));
-            if rest.is_nan() || rest <= 1e-10 * length {
-                continue;
-            }
-            for vector in [&mut v, &mut weighted] {
-                vector.iter_mut().for_each(|entry| *entry = *entry / rest);
-            }
-            let mut image = weighted.clone();
-            self.solver.solve(&mut image)?;
-            self.basis.push(v);
-            self.weighted.push(weighted);
-            self.images.push(image);
         }
         Ok(self.len() - before)
     }
@@ -190,8 +171,8 @@ impl<'a> Subspace<'a> {
         for i in 0..n {
             for j in 0..=i {
                 let entry = 0.5
-                    * (reduce::dot(&self.weighted[i], &self.images[j])
-                        + reduce::dot(&self.weighted[j], &self.images[i]));
+                    * (reduce::dot(&self.basis.weighted[i], &self.images[j])
+                        + reduce::dot(&self.basis.weighted[j], &self.images[i]));
                 (projected[n * i + j], projected[n * j + i]) = (entry, entry);
             }
         }
@@ -200,16 +181,10 @@ impl<'a> Subspace<'a> {
         let mut order: Vec<usize> = (0..n).collect();
         let theta = |i: usize| projected[n * i + i];
         order.sort_by(|&a, &b| theta(b).abs().total_cmp(&theta(a).abs()).then(a.cmp(&b)));
-        let combine = |family: &[Vec<Vec3>], weights: &[f64]| {
-            let mut sum = vec![Vec3::ZERO; self.block_count];
-            for (vector, weight) in family.iter().zip(weights) {
-                reduce::add_scaled(&mut sum, *weight, vector);
-            }
-            sum
-        };
         let pair = |&i: &usize| {
             let weights = &vectors[n * i..n * i + n];
-            let (shape, image) = (combine(&self.basis, weights), combine(&self.images, weights));
+            let [shape, image] = [&self.basis.vectors, &self.images]
+                .map(|family| combination(family, weights, self.block_count));
             // φ − W/θ in the norm of M
             let mut difference = shape.clone();
             reduce::add_scaled(&mut difference, -1.0 / theta(i), &image);
@@ -222,11 +197,6 @@ impl<'a> Subspace<'a> {
     }
 }
 
-/// The root of a square that rounding may have made negative; of what is not a number, that.
-fn length_of(square: f64) -> f64 {
-    if square < 0.0 { 0.0 } else { square.sqrt() }
-}
-
 /// A fixed vector without symmetry, different for each seed: the fractional parts of multiples of irrationals.
 fn start_vector(count: usize, seed: usize) -> Vec<Vec3> {
     let entry =
@@ -235,7 +205,7 @@ fn start_vector(count: usize, seed: usize) -> Vec<Vec3> {
 }
 
 /// The sign in which the largest component is positive.
-fn with_positive_peak(mut shape: Vec<Vec3>) -> Vec<Vec3> {
+pub(crate) fn with_positive_peak(mut shape: Vec<Vec3>) -> Vec<Vec3> {
     let components = shape.iter().flat_map(|entry| entry.to_array());
     let peak = components.fold(0.0_f64, |peak, entry| if entry.abs() > peak.abs() { entry } else { peak });
     if peak < 0.0 {

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::modes::{Settings, lowest_modes};
+use souple_solve::ritz::{pairs_within, vanishing};
 use souple_solve::{BlockMatrix, LinearOperator, SolveError, reduce};
 
 use crate::common::{chain, truss};
@@ -70,4 +71,57 @@ fn counts_are_checked() {
     let error =
         lowest_modes(&stiffness, &lumped(&stiffness, &[1.0, 0.0, 1.0]), None, &settings(7)).unwrap_err();
     assert_eq!(error, SolveError::TooManyModes { wanted: 7, available: 6 });
+}
+
+/// Within a space that holds eigenvectors their pairs are found, whatever else is in it and however its fields mix them; what is to be kept
+/// apart is, and what depends on what is there counts once.
+#[test]
+fn pairs_within_a_space() {
+    let (n, k, m) = (20, 1500.0, 0.2);
+    let stiffness = chain(n, k, 0.0);
+    let mass = lumped(&stiffness, &vec![m; n]);
+    let sine = |j: usize| -> Vec<Vec3> {
+        (1..=n).map(|i| Vec3::new((i as f64 * j as f64 * PI / (n + 1) as f64).sin(), 0.0, 0.0)).collect()
+    };
+    let sum =
+        |a: &[Vec3], s: f64, b: &[Vec3]| -> Vec<Vec3> { a.iter().zip(b).map(|(a, b)| *a + *b * s).collect() };
+    let exact = |j: usize| 4.0 * k / m * (j as f64 * PI / (2 * (n + 1)) as f64).sin().powi(2);
+    // 1 + 3, 1 - 2·3, 5, and the sum of the first two
+    let fields = [sum(&sine(1), 1.0, &sine(3)), sum(&sine(1), -2.0, &sine(3)), sine(5)];
+    let repeated = [&fields[..], &[sum(&fields[0], 1.0, &fields[1])]].concat();
+    // rounding of sums of n terms of the largest eigenvalue
+    let tolerance = n as f64 * f64::EPSILON * 4.0 * k / m;
+    let found = pairs_within(&stiffness, &mass, &repeated, &[]).unwrap();
+    assert_eq!(found.eigenvalues.len(), 3);
+    for (value, j) in found.eigenvalues.iter().zip([1, 3, 5]) {
+        assert!((value - exact(j)).abs() < tolerance, "{j}: {value}");
+    }
+    let across = pairs_within(&stiffness, &mass, &repeated, &[sine(3)]).unwrap();
+    assert_eq!(across.eigenvalues.len(), 2);
+    for (value, j) in across.eigenvalues.iter().zip([1, 5]) {
+        assert!((value - exact(j)).abs() < tolerance, "{j}: {value}");
+    }
+    assert!(across.shapes.iter().all(|shape| (m * reduce::dot(shape, &sine(3))).abs() < 1e-12));
+    let short = [vec![Vec3::ZERO; n - 1]];
+    assert!(matches!(pairs_within(&stiffness, &mass, &short, &[]), Err(SolveError::Length { .. })));
+}
+
+/// Of `1, x, x², x³` at 0, 1, 2, 3 those combinations that vanish at 0 and 1 are the multiples of `x(x-1)` and of `x²(x-1)`.
+#[test]
+fn combinations_that_vanish() {
+    let power = |j: i32| -> Vec<Vec3> { (0..4).map(|i| Vec3::new(f64::from(i).powi(j), 0.0, 1.0)).collect() };
+    let fields: Vec<Vec<Vec3>> = (0..4).map(power).collect();
+    let along = Mat3::from_columns(Vec3::ZERO, Vec3::AXES[1], Vec3::AXES[2]);
+    let found = vanishing(&fields, &[(0, along), (1, along)]);
+    assert_eq!(found.len(), 2);
+    for field in &found {
+        assert!(field[0].x == 0.0 && field[1].x == 0.0);
+        // a x(x-1) + b x²(x-1): 2a + 4b and 6a + 18b
+        let b = (field[3].x - 3.0 * field[2].x) / 6.0;
+        let a = (field[2].x - 4.0 * b) / 2.0;
+        assert!((2.0 * a + 4.0 * b - field[2].x).abs() < 1e-12 && a.abs() + b.abs() > 0.1);
+        // what is free there stays as the coefficients say
+        assert!((field[0].z - field[3].z).abs() < 1e-12);
+    }
+    assert_eq!(vanishing(&fields, &[]).len(), 4);
 }

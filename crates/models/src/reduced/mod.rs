@@ -16,12 +16,14 @@
 
 mod modal;
 mod polynomial;
+mod shapes;
 
 use souple_engine::Mass;
 use souple_math::Vec3;
 
 pub use modal::{ModalDamping, ModalStiffness};
 pub use polynomial::{Degree, Polynomial, PolynomialDescription, PolynomialForce};
+pub use shapes::{GlobalDeformation, monomials};
 
 /// Rows of the frame itself: its origin and its axes. Those of the modes follow, three each.
 const ROWS_OF_FRAME: usize = 4;

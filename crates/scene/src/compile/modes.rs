@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use souple_engine::modes::{Modes, ModesError, Settings, lowest};
+use souple_engine::modes::{ModesError, RitzPairs, Settings, lowest, within};
 use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, System, UnknownKind};
 use souple_math::{Mat3, Vec3};
 use souple_models::materials::Material;
-use souple_models::reduced::{Coupling, ModalBasis, ModalDamping, ModalStiffness};
+use souple_models::reduced::{Coupling, ModalBasis, ModalDamping, ModalStiffness, monomials};
 use souple_models::solids::{FlatCell, SolidDescription, SolidForce};
 
 use super::Draft;
@@ -24,6 +24,8 @@ pub struct PlacedModes {
     /// origin, as vectors to be multiplied with both.
     held: Option<Vec<[Vec3; 2]>>,
     coupling: Coupling,
+    /// Natural modes, the first of the basis; deformations of the whole follow.
+    natural: usize,
 }
 
 /// Rigid motions of a body in space.
@@ -55,9 +57,9 @@ impl PlacedModes {
         frame.chain(std::iter::repeat(Vec3::ZERO)).take(rows)
     }
 
-    /// `ω²` of each mode [1/s²].
+    /// `ω²` of each natural mode [1/s²].
     pub fn eigenvalues(&self) -> &[f64] {
-        self.basis.eigenvalues()
+        &self.basis.eigenvalues()[..self.natural]
     }
 
     /// Appends the points of the mesh to the rows.
@@ -144,12 +146,18 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     let (of_points, centre) = matter(draft, body)?;
     let constraints = held(draft, body)?;
     let is_held = !constraints.is_empty();
+    if is_held && !spec.global.is_empty() {
+        let message = format!("body `{}` is held, and its modes have `global` deformations", body.spec.name);
+        refuse(message, "a body without pins, or modes alone: they are of a whole that is free");
+        return None;
+    }
     let Ok(elastic) = SolidForce::new(&description(body, 0)) else {
         refuse(format!("body `{}` has flat cells, and no modes", body.spec.name), "cells with volume");
         return None;
     };
     let mass = of_points.clone();
-    let modes = match modes_of(draft, body, spec, (of_points, elastic, constraints)) {
+    let Found { modes, global } = match modes_of(draft, body, spec, centre, (of_points, elastic, constraints))
+    {
         Ok(modes) => modes,
         Err(error) => {
             let name = &body.spec.name;
@@ -157,7 +165,7 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
                 Some(available) => {
                     let most = available.saturating_sub(if is_held { 0 } else { RIGID });
                     let message = format!("body `{name}` has {most} modes, not {}", spec.count);
-                    refuse(message, "a smaller `count`, or a finer mesh");
+                    refuse(message, "a smaller `count`, a finer mesh or a higher `degree`");
                 }
                 None => {
                     let expected = "one body that hangs together, and pins that hold it as a whole or none";
@@ -183,13 +191,17 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
         );
         return None;
     }
-    let eigenvalues = values[rigid..].to_vec();
-    let basis = ModalBasis::new(centre, &body.mesh.points, modes.shapes[rigid..].to_vec(), eigenvalues);
+    let mut eigenvalues = values[rigid..].to_vec();
+    let mut shapes = modes.shapes[rigid..].to_vec();
+    let natural = shapes.len();
+    eigenvalues.extend(global.eigenvalues.iter().map(|value| spec.global_stiffness * value));
+    shapes.extend(global.shapes);
+    let basis = ModalBasis::new(centre, &body.mesh.points, shapes, eigenvalues);
     let held = is_held.then(|| basis.momenta(&mass));
     // what a frame of reference that turns does to one mode by another is in the masses between them
     let swings_alone = is_held && draft.spec.world.frame.is_none();
     let coupling = if swings_alone { Coupling::OfOneMode } else { Coupling::All };
-    Some(PlacedModes { basis, first_row: 0, held, coupling })
+    Some(PlacedModes { basis, first_row: 0, held, coupling, natural })
 }
 
 /// The mass of the points of a body and its centre; `None` where there is none.
@@ -234,13 +246,22 @@ fn held(draft: &Draft, body: &Placed) -> Option<Vec<Constraint>> {
     Some(pinned.map(constraint).collect())
 }
 
-/// The lowest modes of the body as a system of points, rigid ones first where it is free.
+/// What a body deforms by.
+struct Found {
+    /// The lowest first, rigid ones before where it is free.
+    modes: RitzPairs,
+    /// Deformations of the whole.
+    global: RitzPairs,
+}
+
+/// The lowest modes of the body as a system of points, and its deformations of the whole about a place.
 fn modes_of(
     draft: &Draft,
     body: &Placed,
     spec: &ModesSpec,
+    centre: Vec3,
     (mass, elastic, constraints): (Mass, SolidForce, Vec<Constraint>),
-) -> Result<Modes, ModesError> {
+) -> Result<Found, ModesError> {
     let is_held = !constraints.is_empty();
     let points = body.mesh.points.clone();
     let mut kinematics = Kinematics::default();
@@ -257,14 +278,46 @@ fn modes_of(
     // c² / L² of the slowest material, c² = E / ρ
     let waves = |material: &Material| material.small_strain.youngs_modulus() / material.density;
     let slowest = body.materials.all.iter().map(waves).fold(f64::INFINITY, f64::min);
-    let shift = if is_held { 0.0 } else { -SHIFT * slowest / body.mesh.bounds().diagonal().powi(2) };
-    let count = spec.count + if is_held { 0 } else { RIGID };
-    let settings = Settings { count, shift, ..Settings::default() };
+    let bounds = body.mesh.bounds();
+    let shift = if is_held { 0.0 } else { -SHIFT * slowest / bounds.diagonal().powi(2) };
+    let rigid = if is_held { 0 } else { RIGID };
+    let wanted = spec.count + rigid;
+    let coordinates = |x: &Vec3| {
+        let (from_middle, size) = (*x - (bounds.low + bounds.high) * 0.5, bounds.high - bounds.low);
+        let along = |axis| if size[axis] > 0.0 { 2.0 * from_middle[axis] / size[axis] } else { 0.0 };
+        Vec3::from_array([0, 1, 2].map(along))
+    };
     let state = State { systems: vec![system.initial_state(points)], ..State::default() };
     let model = Model { period: draft.spec.world.period, systems: vec![system], ..Model::default() };
-    model
-        .start(state)
-        .with_system(0, |system, state, around, ws| lowest(system, state, around, ws, &settings))
+    model.start(state).with_system(0, |system, state, around, ws| {
+        let mut modes = if let Some(degree) = spec.degree {
+            let places: Vec<Vec3> = body.mesh.points.iter().map(coordinates).collect();
+            within(system, state, around, ws, &monomials(degree, &places), &[])?
+        } else {
+            // across deformations of the whole there are as many fewer
+            let settings = Settings { count: wanted + spec.global.len(), shift, ..Settings::default() };
+            let found = lowest(system, state, around, ws, &settings)?;
+            RitzPairs { eigenvalues: found.eigenvalues, shapes: found.shapes }
+        };
+        let mut global = RitzPairs::default();
+        if !spec.global.is_empty() && modes.shapes.len() > rigid {
+            let (motions, natural) = modes.shapes.split_at(rigid);
+            for deformation in &spec.global {
+                let field = body.mesh.points.iter().map(|x| deformation.at(*x - centre)).collect();
+                global.append(within(system, state, around, ws, &[field], motions)?);
+            }
+            let apart = [motions, &global.shapes].concat();
+            let across = within(system, state, around, ws, natural, &apart)?;
+            modes.truncate(rigid);
+            modes.append(across);
+        }
+        let available = modes.shapes.len();
+        if available < wanted {
+            return Err(ModesError::too_many(wanted, available));
+        }
+        modes.truncate(wanted);
+        Ok(Found { modes, global })
+    })
 }
 
 /// The finite elements of a body whose points are rows from `first_row` on.

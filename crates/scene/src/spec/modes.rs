@@ -1,13 +1,16 @@
 //! Bodies that move as a sum of their lowest natural modes, about a frame.
 
+use souple_models::reduced::GlobalDeformation;
 use souple_table::{Range, Value};
 
-use crate::diagnostic::Site;
-use crate::keys::{Key, Keys};
+use crate::diagnostic::{Code, Site};
+use crate::keys::{Key, Keys, Shape, one_of};
 use crate::reader::Reader;
 
 /// Most modes that are sought of one body.
 const MOST_MODES: f64 = 200.0;
+/// Polynomials of the fifth degree have 168 numbers; above, powers of a coordinate are told apart by rounding.
+const HIGHEST_DEGREE: f64 = 5.0;
 
 pub(crate) static MODES: Keys = Keys::new(
     "modes",
@@ -21,6 +24,23 @@ pub(crate) static MODES: Keys = Keys::new(
             "of every mode, critical at 1; `rayleigh_mass` and `rayleigh_stiffness` of `damping` are proportional ones",
         )
         .or(Value::Number(0.0)),
+        Key::integer(
+            "degree",
+            Range::closed(1.0, HIGHEST_DEGREE),
+            "modes are sought among polynomials of this degree of where matter rests, and move all points by such; among all fields of the mesh where left out",
+        ),
+        Key::new(
+            "global",
+            Shape::Texts,
+            "deformations of the whole of a free body beside the modes, which are sought across them: stretch_x, twist_x, shear_xy, taper_xy, bend_xy, of other axes too",
+        ),
+        Key::number(
+            "global_stiffness",
+            "",
+            Range::POSITIVE,
+            "of what resists a global deformation: as a part of what the law does",
+        )
+        .or(Value::Number(1.0)),
     ],
 );
 
@@ -28,6 +48,12 @@ pub(crate) static MODES: Keys = Keys::new(
 pub struct ModesSpec {
     pub count: usize,
     pub damping_ratio: f64,
+    /// Of the polynomials that modes are sought among; `None`: among all fields of the mesh.
+    pub degree: Option<usize>,
+    /// Deformations of the whole, each told once.
+    pub global: Vec<GlobalDeformation>,
+    /// Part of the law's own.
+    pub global_stiffness: f64,
     pub site: Site,
 }
 
@@ -37,7 +63,30 @@ impl ModesSpec {
             // what was refused stays one mode, for other faults to be found
             count: reader.maybe_integer("count").map_or(1, |count| count as usize),
             damping_ratio: reader.number("damping_ratio"),
+            degree: reader.maybe_integer("degree").map(|degree| degree as usize),
+            global: global(reader),
+            global_stiffness: reader.number("global_stiffness"),
             site: reader.site(),
         }
     }
+}
+
+fn global(reader: &Reader) -> Vec<GlobalDeformation> {
+    let mut found = Vec::new();
+    let refuse = |message: String, expected: &str| {
+        reader.log().add(Code::Conflict, &reader.site_of("global"), message, expected);
+    };
+    for name in reader.texts("global") {
+        match GlobalDeformation::named(&name) {
+            None => refuse(
+                format!("`{name}` is no deformation of a whole body"),
+                &one_of(&GlobalDeformation::NAMES),
+            ),
+            Some(known) if found.contains(&known) => {
+                refuse(format!("`{name}` is there twice"), "each deformation once");
+            }
+            Some(known) => found.push(known),
+        }
+    }
+    found
 }

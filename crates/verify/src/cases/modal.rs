@@ -64,6 +64,33 @@ const HALVED: &[Variant] = &[
 /// Energy that the first mode of stretch of a spinning bar stores: `2/15 A ρ² ω⁴ R⁵ / E`, of which the first mode has `960/π⁶`.
 const STRETCHED: f64 = 2.0 / 15.0 * 0.01 * 1e6 * 1296.0 * 9.765_625e-4 / 5e6 * 0.998_555;
 
+const THIRTY_TWO: &str = "bodies.beam.mesh.cells=[32, 1, 1]";
+
+/// The slender beam in modes within polynomials.
+const RITZ: Case = Case {
+    scene: "modal_cantilever",
+    reading: Reading::NaturalFrequency(1),
+    // hexahedra of 1/32 of the length have cubics to the fourth order: 1.3e-5 (1.8e-4 with 1/16, 8e-7 with 1/64)
+    tolerance: Tolerance::Relative(2e-5),
+    source: "Ritz's method for Timoshenko's beam: deflections of this degree, turns of the one below, shear factor 1",
+    // 5e-4 of a frequency
+    mutation: r#"bodies.beam.material.youngs_modulus="10.01 MPa""#,
+    ..FREQUENCY
+};
+
+/// A free bar whose one number of the whole swings at 1 Hz, far above its first mode: `(2π)² ρ L² / 12` [Pa].
+const GLOBAL: Case = Case {
+    scene: "modal_spinning",
+    reading: Reading::FreeFrequency(1),
+    reference: 1.0,
+    // x, xy and xz are fields of regular hexahedra; digits of the modulus
+    tolerance: Tolerance::Relative(1e-8),
+    source: "Rayleigh's quotient of the field (x, 0, 0): omega^2 = 12 k E / (rho L^2)",
+    // 5e-5 of a frequency
+    mutation: "bodies.beam.material.density=1000.1",
+    ..FREQUENCY
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "modal_frequency_n3_1",
@@ -162,5 +189,57 @@ pub(super) const CASES: &[Case] = &[
         // ω⁴
         mutation: "bodies.beam.angular_velocity=[0, 0, 6.06]",
         ..TUMBLING
+    },
+    Case {
+        id: "modal_ritz_2",
+        what: "first natural frequency of a slender beam within polynomials of the second degree",
+        settings: &[THIRTY_TWO, "bodies.beam.modes={ count = 2, degree = 2 }"],
+        reference: 0.820_743_05,
+        ..RITZ
+    },
+    Case {
+        id: "modal_ritz_3",
+        what: "of the third",
+        settings: &[THIRTY_TWO, "bodies.beam.modes={ count = 2, degree = 3 }"],
+        reference: 0.648_621_89,
+        ..RITZ
+    },
+    Case {
+        id: "modal_ritz_4",
+        what: "of the fourth",
+        settings: &[THIRTY_TWO, "bodies.beam.modes={ count = 2, degree = 4 }"],
+        reference: 0.645_755_02,
+        ..RITZ
+    },
+    Case {
+        id: "global_stretch",
+        what: "frequency at which a bar is stretched as a whole, beside one mode",
+        settings: &[
+            "bodies.beam.material.poissons_ratio=0",
+            "bodies.beam.material.youngs_modulus=822.4670334241132",
+            "bodies.beam.modes={ count = 1, global = [\"stretch_x\"] }",
+        ],
+        ..GLOBAL
+    },
+    Case {
+        id: "global_stretch_softened",
+        what: "of a matter four times as soft, with four times its stiffness as a whole",
+        settings: &[
+            "bodies.beam.material.poissons_ratio=0",
+            "bodies.beam.material.youngs_modulus=205.6167583560283",
+            "bodies.beam.modes={ count = 1, global = [\"stretch_x\"], global_stiffness = 4 }",
+        ],
+        ..GLOBAL
+    },
+    Case {
+        id: "global_twist",
+        what: "at which it is twisted as a whole",
+        settings: &[
+            "bodies.beam.material.poissons_ratio=0",
+            "bodies.beam.material.youngs_modulus=1644.9340668482264",
+            "bodies.beam.modes={ count = 1, global = [\"twist_x\"] }",
+        ],
+        source: "Rayleigh's quotient of the field x e_x × s, sections that stay plane: omega^2 = 12 G / (rho L^2)",
+        ..GLOBAL
     },
 ];
