@@ -5,7 +5,7 @@ use std::sync::Arc;
 use souple_engine::Motion;
 use souple_math::{Mat3, Vec3};
 
-use super::Relation;
+use super::{Relation, across};
 
 /// `g_c = n_c·(x − p(t))` with up to three directions `n_c` at right angles: one of a plane, two of a line, three of a nail. Its
 /// multipliers are the force on the mass along them [N].
@@ -27,12 +27,8 @@ impl Guide {
 
     /// `None` for a direction of no length.
     pub fn line(row: u32, place: Vec3, direction: Vec3) -> Option<Self> {
-        let along = direction.try_normalised()?;
-        // across the axis that it is farthest from
-        let least = along.to_array().map(f64::abs);
-        let axis = (0..3).fold(0, |axis, other| if least[other] < least[axis] { other } else { axis });
-        let across = along.cross(Vec3::AXES[axis]).try_normalised()?;
-        Some(Self { normals: [across, along.cross(across), Vec3::ZERO], ..Self::nail(row, place) })
+        let [one, other] = across(direction)?;
+        Some(Self { normals: [one, other, Vec3::ZERO], ..Self::nail(row, place) })
     }
 
     /// `None` for a normal of no length.
@@ -64,8 +60,8 @@ impl Relation for Guide {
     }
 
     fn slope(&self, _positions: &[Vec3], _time: f64) -> Option<Vec3> {
-        let [normal, across, _] = self.normals;
-        (across == Vec3::ZERO).then_some(normal)
+        let [normal, other, _] = self.normals;
+        (other == Vec3::ZERO).then_some(normal)
     }
 
     fn surface_velocity(&self, time: f64) -> Vec3 {

@@ -1,6 +1,8 @@
 //! Geometric relations between masses: one file for each kind. What keeps them is in [`super::constraints`].
 
 mod acceleration;
+mod angle;
+mod direction;
 mod enclosed;
 mod guide;
 mod joint;
@@ -8,6 +10,8 @@ mod rod;
 mod surface;
 
 pub use acceleration::Acceleration;
+pub use angle::Angle;
+pub use direction::Direction;
 pub use enclosed::{Area, Volume};
 pub use guide::Guide;
 pub use joint::Joint;
@@ -64,6 +68,16 @@ pub trait Relation: Send + Sync + Debug {
     fn describe(&self) -> String;
 }
 
+/// Two directions at right angles to another and to each other; `None` for one of no length.
+fn across(direction: Vec3) -> Option<[Vec3; 2]> {
+    let along = direction.try_normalised()?;
+    // across the axis that it is farthest from
+    let least = along.to_array().map(f64::abs);
+    let axis = (0..3).fold(0, |axis, other| if least[other] < least[axis] { other } else { axis });
+    let across = along.cross(Vec3::AXES[axis]).try_normalised()?;
+    Some([across, along.cross(across)])
+}
+
 /// A gradient of the first component alone.
 fn first_row(gradient: Vec3) -> Mat3 {
     Mat3::from_columns(gradient, Vec3::ZERO, Vec3::ZERO).transpose()
@@ -76,9 +90,15 @@ mod tests {
     use souple_formal::Formula;
 
     use super::*;
-    use crate::loads::FormulaVector;
+    use crate::loads::{FormulaVector, RigidMotion};
 
     const VARIABLES: [&str; 4] = ["x", "y", "z", "t"];
+
+    /// About an axis that moves.
+    fn turning() -> Arc<dyn souple_engine::Motion> {
+        let rotation = FormulaVector::compile("[t, sin(2 * t), 0.5]").unwrap();
+        Arc::new(RigidMotion { rotation: Some(Arc::new(rotation)), ..RigidMotion::default() })
+    }
 
     fn all(positions: &[Vec3]) -> Vec<Box<dyn Relation>> {
         let formula = |text: &str| Formula::compile(text, &VARIABLES).unwrap();
@@ -99,6 +119,13 @@ mod tests {
             }),
             Box::new(Area { rows: vec![0, 1, 2, 3], normal: Vec3::Z, area: 0.5, part: part() }),
             Box::new(Volume::new(&[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]], part(), positions)),
+            Box::new(Direction::new([3, 1], Vec3::new(1.0, -2.0, 0.5), Some(turning())).unwrap()),
+            Box::new(Angle { rows: [1, 0, 3], axis: None, angle: part() }),
+            Box::new(Angle {
+                rows: [3, 2, 0],
+                axis: Vec3::new(0.3, 1.0, -0.5).try_normalised(),
+                angle: part(),
+            }),
         ]
     }
 
@@ -177,6 +204,22 @@ mod tests {
         }
     }
 
+    /// An angle about an axis is told beyond whole turns, one without between its two legs alone.
+    #[test]
+    fn angles_go_on_beyond_whole_turns() {
+        let positions = [Vec3::X, Vec3::ZERO, Vec3::Y];
+        for (axis, angle, off) in [
+            (Some(Vec3::Z), "20 * pi + 0.5 * pi", 0.0),
+            (Some(-Vec3::Z), "-0.6 * pi", 0.1 * std::f64::consts::PI),
+            (None, "0.25 * pi", 0.25 * std::f64::consts::PI),
+        ] {
+            let angle = Formula::compile(angle, &["t"]).unwrap();
+            let found = Angle { rows: [0, 1, 2], axis, angle }.value(&positions, 0.0).x;
+            // rounding of ten turns
+            assert!((found - off).abs() < 2e-14, "{axis:?}: {found}");
+        }
+    }
+
     #[derive(Debug)]
     struct Swinging;
 
@@ -190,12 +233,12 @@ mod tests {
         }
     }
 
-    /// Where nothing is told of what is kept, motion of the whole changes no rod, joint, area or volume.
+    /// Where nothing is told of what is kept, motion of the whole changes no rod, joint, area, volume, direction or angle.
     #[test]
     fn what_is_between_masses_does_not_see_them_move_together() {
         let positions = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let moved = positions.map(|x| x + Vec3::new(100.0, -50.0, 30.0));
-        for relation in [0, 1, 7, 8].map(|index| all(&positions).swap_remove(index)) {
+        for relation in [0, 1, 7, 8, 9, 10, 11].map(|index| all(&positions).swap_remove(index)) {
             let off = (relation.value(&positions, 0.0) - relation.value(&moved, 0.0)).length();
             // places are known to 1e-14
             assert!(off < 1e-13, "{}: {off}", relation.describe());

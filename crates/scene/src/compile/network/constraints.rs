@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use souple_engine::{Force, Motion};
 use souple_formal::Formula;
-use souple_math::Vec3;
-use souple_models::loads::FormulaVector;
-use souple_models::network::relations::{Acceleration, Area, Guide, Joint, Relation, Rod, Surface, Volume};
+use souple_math::{Mat3, Vec3};
+use souple_models::loads::{FormulaVector, RigidMotion};
+use souple_models::network::relations::{
+    Acceleration, Angle, Area, Direction, Guide, Joint, Relation, Rod, Surface, Volume,
+};
 use souple_models::network::{
     Constraints, Keeping, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints,
 };
@@ -15,6 +17,7 @@ use super::super::bodies::Placed;
 use super::super::{Draft, memory, motion, start};
 use super::ends;
 use crate::diagnostic::{Code, Log};
+use crate::spec::boundary::MotionSpec;
 use crate::spec::network::{ConstraintKind, ConstraintSpec, Guided, Join, Network};
 
 /// Of what a relation changes by when its masses move by their greatest coordinate: what is off by more at the start does not hold.
@@ -145,6 +148,10 @@ impl Making<'_> {
             ConstraintKind::Joint(join) => {
                 self.of_pairs(join, |[a, b]| Some(Joint { ends: [self.row(a), self.row(b)] }))
             }
+            ConstraintKind::Direction(join, along, rotation) => {
+                self.directions(join, *along, rotation.as_ref())
+            }
+            ConstraintKind::Angle(corners, angle, axis) => self.angles(corners, angle.as_ref(), *axis),
             ConstraintKind::Nail(guided) => self.guided(guided, |row, place| Some(Guide::nail(row, place))),
             ConstraintKind::Line(guided, direction) => {
                 self.guided(guided, |row, place| Guide::line(row, place, *direction))
@@ -307,6 +314,65 @@ impl Making<'_> {
         })
     }
 
+    fn directions(
+        &self,
+        join: &Join,
+        along: Option<Vec3>,
+        rotation: Option<&MotionSpec>,
+    ) -> Option<Vec<Box<dyn Relation>>> {
+        let rotation = motion::motion(self.draft.log, rotation, &self.spec.kind_site)?.map(|rotation| {
+            Arc::new(RigidMotion { rotation: Some(rotation), ..RigidMotion::default() }) as Arc<dyn Motion>
+        });
+        let at_start = rotation.as_ref().map_or(Mat3::IDENTITY, |rotation| rotation.turn(0.0));
+        let starts = start::places(self.body.spec.start.as_ref(), &self.body.mesh.points);
+        self.of_pairs(join, |[a, b]| {
+            let along = along.unwrap_or_else(|| self.place(b) - self.place(a));
+            let ends = [self.row(a), self.row(b)];
+            let Some(direction) = Direction::new(ends, along, rotation.clone()) else {
+                let message = format!("masses {a} and {b} rest at one place, and point nowhere");
+                return self.refuse(Code::Conflict, message, "masses that are apart, or `along`");
+            };
+            if (at_start * along).dot(starts[b as usize] - starts[a as usize]) <= 0.0 {
+                let message = format!(
+                    "from mass {a} to mass {b} it is not along the direction but against or across it at the start"
+                );
+                return self.refuse(Code::Conflict, message, "a direction less than a right angle away");
+            }
+            Some(direction)
+        })
+    }
+
+    fn angles(
+        &self,
+        corners: &[[u32; 3]],
+        angle: Option<&Formula>,
+        axis: Option<Vec3>,
+    ) -> Option<Vec<Box<dyn Relation>>> {
+        let points = self.rows_at(&self.body.mesh.points);
+        self.numbered(corners, "corners")?
+            .into_iter()
+            .map(|rows| {
+                let mut relation = Angle { rows, axis, angle: Formula::constant(0.0) };
+                relation.angle = angle.cloned().unwrap_or_else(|| Formula::constant(relation.at(&points)));
+                Some(Box::new(relation) as Box<dyn Relation>)
+            })
+            .collect()
+    }
+
+    /// The rows of masses that are told by their numbers within the groups.
+    fn numbered(&self, triples: &[[u32; 3]], key: &str) -> Option<Vec<[u32; 3]>> {
+        let masses = self.masses()?;
+        let mut of_rows = Vec::with_capacity(triples.len());
+        for (index, corners) in triples.iter().enumerate() {
+            if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= masses.len()) {
+                let message = format!("{key}[{index}] is of mass {wrong}, and there are {}", masses.len());
+                return self.refuse(Code::OutOfRange, message, &format!("numbers below {}", masses.len()));
+            }
+            of_rows.push(corners.map(|corner| self.row(masses[corner as usize])));
+        }
+        Some(of_rows)
+    }
+
     fn area(&self, normal: Vec3, part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
         let masses = self.masses()?;
         if masses.len() < 3 {
@@ -328,16 +394,7 @@ impl Making<'_> {
     }
 
     fn volume(&self, triangles: &[[u32; 3]], part: &Formula) -> Option<Vec<Box<dyn Relation>>> {
-        let masses = self.masses()?;
-        let mut of_rows = Vec::with_capacity(triangles.len());
-        for (index, corners) in triangles.iter().enumerate() {
-            if let Some(wrong) = corners.iter().find(|corner| **corner as usize >= masses.len()) {
-                let message =
-                    format!("triangles[{index}] is of mass {wrong}, and there are {}", masses.len());
-                return self.refuse(Code::OutOfRange, message, &format!("numbers below {}", masses.len()));
-            }
-            of_rows.push(corners.map(|corner| self.row(masses[corner as usize])));
-        }
+        let of_rows = self.numbered(triangles, "triangles")?;
         let points = self.rows_at(&self.body.mesh.points);
         let volume = Volume::new(&of_rows, part.clone(), &points);
         let enclosed = volume.enclosed(&points);

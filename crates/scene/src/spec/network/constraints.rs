@@ -10,7 +10,7 @@ use super::Join;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
-use crate::spec::boundary::{LOAD_VARIABLES, MOTION, MotionSpec};
+use crate::spec::boundary::{LOAD_VARIABLES, MOTION, MotionSpec, TURNING};
 
 static ROD: Keys = Keys::new(
     "constraint_rod",
@@ -117,9 +117,45 @@ static VOLUME: Keys = Keys::new(
     ],
 );
 
+static DIRECTION: Keys = Keys::new(
+    "constraint_direction",
+    "the direction from the first to the second of pairs of masses, named as those of rods are",
+    &[
+        super::CHAIN,
+        super::LOOP,
+        super::ALL,
+        super::PAIRED,
+        super::REACH,
+        super::FROM,
+        super::TO,
+        Key::vector("along", "", "where they point at the start; as each rests where left out"),
+        Key::new("rotation", Shape::Table(&TURNING), "how that turns; it stays where left out"),
+    ],
+);
+
+static ANGLE: Keys = Keys::new(
+    "constraint_angle",
+    "angles at masses between the segments to two others",
+    &[
+        Key::new(
+            "corners",
+            Shape::Vectors,
+            "three numbers of masses within the group for each, the second of which is at the corner",
+        )
+        .required(),
+        Key::new("value", Shape::Formula(&["t"]), "how wide they are; as each rests where left out")
+            .in_unit("rad"),
+        Key::vector(
+            "axis",
+            "",
+            "about which they are counted, counterclockwise seen against it; within half a turn, whatever the plane, where left out",
+        ),
+    ],
+);
+
 static AUGMENTED: Keys = Keys::new(
     "constraint_augmented",
-    "forces of an augmented Lagrangian, which keep what is constrained in the end; numbers are per metre, square metre or cubic metre of what it is off by",
+    "forces of an augmented Lagrangian, which keep what is constrained in the end; numbers are per metre, square metre, cubic metre or radian of what it is off by",
     &[
         Key::number("stiffness", "", Range::NOT_NEGATIVE, "`c` of the force `−∇g (λ + c g + z ġ)`")
             .required(),
@@ -135,8 +171,20 @@ static BALLS: Keys = Keys::new(
         .required()],
 );
 
-const KINDS: &[&str] =
-    &["rod", "joint", "nail", "line", "plane", "surface", "acceleration", "area", "volume", "balls"];
+const KINDS: &[&str] = &[
+    "rod",
+    "joint",
+    "direction",
+    "angle",
+    "nail",
+    "line",
+    "plane",
+    "surface",
+    "acceleration",
+    "area",
+    "volume",
+    "balls",
+];
 
 /// Of a constraint with a sense.
 const OF_SIDED: [&str; 3] = ["restitution", "friction", "radius"];
@@ -151,10 +199,12 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
         Key::new(
             "of",
             Shape::Texts,
-            "the groups whose masses it is of, one or two of `rod`, `joint` and `balls`; all masses where left out",
+            "the groups whose masses it is of, one or two of `rod`, `joint`, `direction` and `balls`; all masses where left out",
         ),
         Key::new("rod", Shape::Table(&ROD), "pairs at one distance"),
         Key::new("joint", Shape::Table(&JOINT), "pairs at one place"),
+        Key::new("direction", Shape::Table(&DIRECTION), "segments between two masses along a direction"),
+        Key::new("angle", Shape::Table(&ANGLE), "angles between two segments"),
         Key::new("nail", Shape::Table(&NAIL), "each at a place"),
         Key::new("line", Shape::Table(&LINE), "each on a straight line"),
         Key::new("plane", Shape::Table(&PLANE), "each on a plane"),
@@ -220,6 +270,10 @@ pub enum ConstraintKind {
     /// At a length [m], that at rest where `None`.
     Rod(Join, Option<f64>),
     Joint(Join),
+    /// Along a direction, that at rest where `None`, turned by rotation vectors [rad].
+    Direction(Join, Option<Vec3>, Option<MotionSpec>),
+    /// Of three masses each [rad], that at rest where `None`, and the axis about which it is.
+    Angle(Vec<[u32; 3]>, Option<Formula>, Option<Vec3>),
     Nail(Guided),
     Line(Guided, Vec3),
     Plane(Guided, Vec3),
@@ -363,13 +417,28 @@ fn check_sense(
 impl ConstraintKind {
     fn read(kind: &str, of: &[String], reader: &Reader) -> Option<Self> {
         Some(match kind {
-            "rod" | "joint" | "balls" if of.len() > 2 => {
+            "rod" | "joint" | "direction" | "balls" if of.len() > 2 => {
                 let message = format!("`{kind}` is between one group and itself, or two groups");
                 reader.log().add(Code::Conflict, &reader.site(), message, "one group in `of`, or two");
                 return None;
             }
             "rod" => Self::Rod(Join::read(reader, of, &reader.site())?, reader.maybe_number("length")),
             "joint" => Self::Joint(Join::read(reader, of, &reader.site())?),
+            "direction" => {
+                let rotation = reader.table("rotation").and_then(|table| MotionSpec::read(&table));
+                Self::Direction(
+                    Join::read(reader, of, &reader.site())?,
+                    maybe_axis(reader, "along")?,
+                    rotation,
+                )
+            }
+            "angle" => {
+                let value = match reader.has("value") {
+                    true => Some(reader.maybe_formula("value")?),
+                    false => None,
+                };
+                Self::Angle(corners(reader)?, value, maybe_axis(reader, "axis")?)
+            }
             "nail" => Self::Nail(Guided::read(reader)),
             "line" => Self::Line(Guided::read(reader), axis(reader, "direction")?),
             "plane" => Self::Plane(Guided::read(reader), axis(reader, "normal")?),
@@ -397,8 +466,41 @@ fn axis(reader: &Reader, key: &str) -> Option<Vec3> {
     axis
 }
 
+/// The same where it is written; `None` where that is refused.
+fn maybe_axis(reader: &Reader, key: &str) -> Option<Option<Vec3>> {
+    if reader.has(key) { axis(reader, key).map(Some) } else { Some(None) }
+}
+
 fn part(reader: &Reader) -> Option<Formula> {
     if reader.has("part") { reader.maybe_formula("part") } else { Some(Formula::constant(1.0)) }
+}
+
+/// Lists of three different numbers of masses.
+fn triples(reader: &Reader, key: &str) -> Option<Vec<[u32; 3]>> {
+    let is_number = |x: f64| x >= 0.0 && x.fract() == 0.0 && x <= f64::from(u32::MAX);
+    let mut triples = Vec::new();
+    for (index, corners) in reader.vectors(key).into_iter().enumerate() {
+        let corners = corners.to_array();
+        let [a, b, c] = corners;
+        if !corners.into_iter().all(is_number) || a == b || b == c || c == a {
+            let message = format!("{key}[{index}] is {corners:?}");
+            let expected = "three different numbers of masses";
+            reader.log().add(Code::OutOfRange, &reader.site_of(key), message, expected);
+            return None;
+        }
+        triples.push(corners.map(|corner| corner as u32));
+    }
+    Some(triples)
+}
+
+fn corners(reader: &Reader) -> Option<Vec<[u32; 3]>> {
+    let corners = triples(reader, "corners")?;
+    if corners.is_empty() && reader.has("corners") {
+        let expected = "three numbers of masses, such as [[0, 1, 2]]";
+        reader.log().add(Code::OutOfRange, &reader.site_of("corners"), "there are no corners", expected);
+        return None;
+    }
+    Some(corners)
 }
 
 /// Numbers of a closed surface, whose sides are each met by one in the opposite direction.
@@ -407,17 +509,7 @@ fn triangles(reader: &Reader) -> Option<Vec<[u32; 3]>> {
         reader.log().add(Code::OutOfRange, &reader.site_of("triangles"), message, expected);
         None
     };
-    let mut triangles = Vec::new();
-    for (index, corners) in reader.vectors("triangles").into_iter().enumerate() {
-        let is_number = |x: f64| x >= 0.0 && x.fract() == 0.0 && x <= f64::from(u32::MAX);
-        let corners = corners.to_array();
-        let [a, b, c] = corners;
-        if !corners.into_iter().all(is_number) || a == b || b == c || c == a {
-            let message = format!("triangles[{index}] is {corners:?}");
-            return refuse(message, "three different numbers of masses");
-        }
-        triangles.push(corners.map(|corner| corner as u32));
-    }
+    let triangles = triples(reader, "triangles")?;
     let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
     let mut met = std::collections::HashMap::new();
     triangles.iter().flat_map(|corners| sides(*corners)).for_each(|side| *met.entry(side).or_insert(0) += 1);
