@@ -12,6 +12,10 @@
 //! Each component is scaled so that the diagonal of `J W Jᵀ` is one. Relations may repeat each other: the matrix is then singular, and its
 //! diagonal is raised by `RAISE`. What is left of that is gone after a few of the solves that are made anyway, and of all forces that do the same those with the least
 //! `Σ (J W Jᵀ)_cc λ_c²` are found. Relations that contradict each other are told, not shared out.
+//!
+//! A relation of one component may yield: `|λ| ≤ Y`, and where that is reached it gives way and what it is to be goes along, `w' = g(x', t')`, a
+//! perfectly plastic flow `p` from what it was told. Which do is found by a primal–dual active set (Hintermüller, Ito & Kunisch 2003): those at their limit push with that
+//! and are not solved for, the others are; one whose multiplier comes out beyond its limit is held at that, one that would flow against its push holds again.
 
 use std::sync::Arc;
 
@@ -34,8 +38,10 @@ const TOLERANCE: f64 = 1e-12;
 const ROUNDING: f64 = 2e-15;
 /// Each takes a share of the error away that is the square of the angle by which gradients turn within the step.
 const MOST_SOLVES: u32 = 50;
-/// On the diagonal of a component that no force can change: it is not solved for.
+/// On the diagonal of a component that no force can change, or that has given way: it is not solved for.
 const IDLE: f64 = 1.0;
+/// How often those that give way may be others before a step is given up.
+const MOST_SWITCHES: u32 = 100;
 
 /// What is known of a relation before a step starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +50,16 @@ pub enum Earlier {
     Value(Vec3),
     /// `ġ` at the start, where no step led there.
     Rate(Vec3),
+}
+
+impl Earlier {
+    /// The same of what is counted from another value.
+    fn from(self, value: Vec3) -> Self {
+        match self {
+            Self::Value(before) => Self::Value(before - value),
+            rate @ Self::Rate(_) => rate,
+        }
+    }
 }
 
 /// In the memory of a force, what the numbers of its relations beside the multipliers are; zero where no step came before.
@@ -79,6 +95,12 @@ pub trait Binding: Send + Sync {
     /// The value that it is to have where a step of `timestep` from `start` ends, by what was before and its value where it starts.
     fn wanted(&self, relation: usize, earlier: Earlier, now: Vec3, start: f64, timestep: f64) -> Vec3;
 
+    /// The greatest multiplier, of either sign, by which a relation of one component is kept: where more would be needed it gives way, and stays
+    /// as it was then. `None` where it is kept by whatever is needed.
+    fn yields_at(&self, _relation: usize) -> Option<f64> {
+        None
+    }
+
     /// What it is, in words.
     fn describe(&self, relation: usize) -> String;
 }
@@ -89,19 +111,29 @@ pub fn memory_len(relations: usize) -> usize {
     2 + 6 * relations
 }
 
-/// Where what is known of before stands.
-fn known_at(memory: &[f64]) -> usize {
-    memory.len() / 2
+/// The same where relations yield: with how far each has flowed from what it was told.
+pub fn yielding_memory_len(relations: usize) -> usize {
+    memory_len(relations) + relations
+}
+
+/// Where what is known of before stands, of so many relations.
+fn known_at(relations: usize) -> usize {
+    1 + 3 * relations
 }
 
 /// What is known of a relation from before: values or rates.
-fn earlier(memory: &[f64], relation: usize) -> Vec3 {
-    let first = known_at(memory) + 1 + 3 * relation;
+fn earlier(memory: &[f64], relations: usize, relation: usize) -> Vec3 {
+    let first = known_at(relations) + 1 + 3 * relation;
     Vec3::new(memory[first], memory[first + 1], memory[first + 2])
 }
 
-fn set_earlier(memory: &mut [f64], relation: usize, kind: f64, value: Vec3) {
-    let at = known_at(memory);
+/// How far a relation has flowed; not at all where none yields.
+fn flow(memory: &[f64], relations: usize, relation: usize) -> f64 {
+    memory.get(memory_len(relations) + relation).copied().unwrap_or(0.0)
+}
+
+fn set_earlier(memory: &mut [f64], (relations, relation): (usize, usize), kind: f64, value: Vec3) {
+    let at = known_at(relations);
     memory[at] = kind;
     memory[at + 1 + 3 * relation..at + 4 + 3 * relation].copy_from_slice(&value.to_array());
 }
@@ -164,9 +196,40 @@ pub(crate) struct Bound {
     multipliers: Vec<Vec3>,
     /// The multipliers that the step before ended with.
     before_step: Vec<Vec3>,
-    /// Ones in the components that forces change.
+    /// Ones in the components that forces change, and that have not given way.
     active: Vec<Vec3>,
+    /// Of each relation.
+    flowing: Vec<Flowing>,
     contacts: ContactSystem,
+}
+
+/// Whether a relation has given way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Flowing {
+    Not,
+    /// Its multiplier is at the limit.
+    Pushing,
+    /// It is at the opposite of the limit.
+    Pulling,
+}
+
+impl Flowing {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Not => 0.0,
+            Self::Pushing => 1.0,
+            Self::Pulling => -1.0,
+        }
+    }
+
+    /// Of a multiplier against its limit.
+    fn of(multiplier: f64, limit: f64) -> Self {
+        match multiplier {
+            beyond if beyond >= limit => Self::Pushing,
+            beyond if beyond <= -limit => Self::Pulling,
+            _ => Self::Not,
+        }
+    }
 }
 
 /// What of the relations of a system stays from step to step.
@@ -176,8 +239,9 @@ pub(crate) struct Structure {
     relations: Vec<(usize, usize)>,
     /// Where the entries of each begin, and at the end of the list how many there are.
     starts: Vec<usize>,
-    /// The row of each entry.
+    /// The row and the relation of each entry.
     rows: Vec<u32>,
+    of_entries: Vec<u32>,
     /// Relation and entry of each row: where those of each begin.
     row_starts: Vec<usize>,
     of_rows: Vec<(u32, u32)>,
@@ -236,6 +300,11 @@ impl Structure {
             }
         }
         let solver = DirectSolver::analyse(&pattern, None)?;
+        let of_entries = starts
+            .windows(2)
+            .enumerate()
+            .flat_map(|(relation, entries)| std::iter::repeat_n(relation as u32, entries[1] - entries[0]))
+            .collect();
         let mut row_starts = vec![0];
         row_starts.extend(of_row.iter().scan(0, |sum, related| {
             *sum += related.len();
@@ -244,11 +313,26 @@ impl Structure {
         let bodies = bodies(&starts, &rows, of_row.len());
         let of_rows = of_row.concat();
         let matrix = BlockMatrix::zeros(pattern);
-        Ok(Self { relations, starts, rows, row_starts, of_rows, bodies, products, matrix, solver })
+        Ok(Self {
+            relations,
+            starts,
+            rows,
+            of_entries,
+            row_starts,
+            of_rows,
+            bodies,
+            products,
+            matrix,
+            solver,
+        })
     }
 
     pub(crate) fn relation_count(&self) -> usize {
         self.relations.len()
+    }
+
+    fn relation_of(&self, entry: u32) -> usize {
+        self.of_entries[entry as usize] as usize
     }
 
     /// Rows of one body are related to each other; no relation is of two bodies.
@@ -305,6 +389,14 @@ fn bodies(starts: &[usize], rows: &[u32], row_count: usize) -> Vec<u32> {
         least[row as usize] = root(&mut least, row);
     }
     least
+}
+
+/// How relations were solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Solved {
+    AsBefore,
+    /// Some gave way, or hold again, since forces were last found.
+    WithOthers,
 }
 
 /// What forces are sought for.
@@ -378,16 +470,17 @@ impl Bound {
         self.lead(step, ws);
         self.look(step, structure, &ws.rows.positions, next)?;
         self.scale(step, structure)?;
-        if structure.relation_count() > 0 {
-            self.factorize(step, structure)?;
-        }
         self.take_off(step, structure, next);
         self.multipliers.clear();
         self.multipliers.resize(structure.relations.len(), Vec3::ZERO);
+        self.flow_on(step, structure, next);
+        if structure.relation_count() > 0 {
+            self.factorize(step, structure)?;
+        }
         if sought == Sought::Accelerations || !step.system.has_contacts() {
             self.allow(step, structure);
             self.solve(step, structure)?;
-            self.give(step.system, structure, next, &mut ws.row_force);
+            self.give(step, structure, next, &mut ws.row_force);
             return Ok(StepReport::default());
         }
         self.keep_with_contacts(step, structure, next, ws)
@@ -397,24 +490,25 @@ impl Bound {
     fn keep_with_contacts(
         &mut self,
         step: &Step,
-        structure: &Structure,
+        structure: &mut Structure,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let (mut contacts, mut places) =
             (std::mem::take(&mut self.contacts), std::mem::take(&mut self.places));
-        contacts.begin(&self.moving(step, structure, &ws.rows.positions), next, &mut places)?;
+        let before = self.moving(step, structure, &ws.rows.positions, Solved::AsBefore);
+        contacts.begin(&before, next, &mut places)?;
         self.places = places;
         self.allow(step, structure);
         loop {
-            self.solve(step, structure)?;
+            let solved = self.solve(step, structure)?;
             if structure.relation_count() > 0 {
                 // to rounding: contacts of one body are to agree about where it is
                 self.correct(step, structure)?;
             }
             let mut places = std::mem::take(&mut self.places);
             self.unpushed.clone_from(&places);
-            let moving = self.moving(step, structure, &ws.rows.positions);
+            let moving = self.moving(step, structure, &ws.rows.positions, solved);
             let improved = contacts.improve(&moving, next, &mut places);
             self.places = places;
             if !improved? {
@@ -422,8 +516,8 @@ impl Bound {
             }
             self.yield_to_contacts(step, structure)?;
         }
-        self.give(step.system, structure, next, &mut ws.row_force);
-        let moving = self.moving(step, structure, &ws.rows.positions);
+        self.give(step, structure, next, &mut ws.row_force);
+        let moving = self.moving(step, structure, &ws.rows.positions, Solved::AsBefore);
         let report = contacts.give(&moving, next, (&self.places, &mut ws.row_force));
         self.contacts = contacts;
         Ok(report)
@@ -450,11 +544,18 @@ impl Bound {
         self.apply(step, structure)
     }
 
-    fn moving<'a>(&'a self, step: &'a Step, structure: &'a Structure, positions: &'a [Vec3]) -> Moving<'a> {
+    fn moving<'a>(
+        &'a self,
+        step: &'a Step,
+        structure: &'a Structure,
+        positions: &'a [Vec3],
+        solved: Solved,
+    ) -> Moving<'a> {
         Moving {
             step,
             structure,
             positions,
+            solved,
             before: &self.before,
             inverse_masses: &self.inverse_masses,
             gradients: &self.gradients,
@@ -493,8 +594,85 @@ impl Bound {
         structure.spread(scale, &self.before_step, &self.gradients, &self.inverse_masses, &mut self.places);
     }
 
-    /// Finds the multipliers under which the step leads to where all relations are what they are to be.
-    fn solve(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+    /// Begins with those relations yielding that did so in the step before.
+    fn flow_on(&mut self, step: &Step, structure: &Structure, next: &SystemState) {
+        self.flowing.clear();
+        self.change.clear();
+        for (index, (force, relation)) in structure.relations.iter().enumerate() {
+            let limit = step.system.binding(*force).and_then(|it| it.yields_at(*relation));
+            let before = multiplier(&next.memory[step.system.memory_range(*force)], *relation).x;
+            let flowing = match limit {
+                Some(limit) if self.active[index].x > 0.0 => Flowing::of(before, limit),
+                _ => Flowing::Not,
+            };
+            self.flowing.push(flowing);
+            let mut change = Vec3::ZERO;
+            if flowing != Flowing::Not {
+                change.x = flowing.sign() * limit.unwrap_or(0.0) / self.scales[index].x;
+                self.active[index].x = 0.0;
+            }
+            self.change.push(change);
+        }
+        self.push(step, structure);
+    }
+
+    /// Changes multipliers, and where the step leads with them.
+    fn push(&mut self, step: &Step, structure: &Structure) {
+        let square = step.timestep * step.timestep;
+        structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
+        for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
+            *multiplier += *change;
+        }
+    }
+
+    /// Finds the multipliers under which the step leads to where all relations are what they are to be, but for those that give way.
+    fn solve(&mut self, step: &Step, structure: &mut Structure) -> Result<Solved, StepError> {
+        let mut solved = Solved::AsBefore;
+        for _ in 0..MOST_SWITCHES {
+            self.solve_held(step, structure)?;
+            if !self.switch(step, structure) {
+                return Ok(solved);
+            }
+            solved = Solved::WithOthers;
+            self.factorize(step, structure)?;
+        }
+        let is_yielding = |index: &usize| self.flowing[*index] != Flowing::Not;
+        let worst = (0..self.flowing.len()).find(is_yielding).unwrap_or(0);
+        Err(self.unkept(step, structure, worst))
+    }
+
+    /// Lets relations give way whose multipliers are beyond their limits, and hold again those that would flow against what they push with;
+    /// whether there were any.
+    fn switch(&mut self, step: &Step, structure: &Structure) -> bool {
+        let mut is_any = false;
+        self.change.clear();
+        for (index, (force, relation)) in structure.relations.iter().enumerate() {
+            let mut change = Vec3::ZERO;
+            let limit = step.system.binding(*force).and_then(|it| it.yields_at(*relation));
+            if let Some(limit) = limit.map(|limit| limit / self.scales[index].x) {
+                let (multiplier, is_active) = (self.multipliers[index].x, self.active[index].x > 0.0);
+                let is_against = self.off[index].x * self.flowing[index].sign() < -self.near[index].x;
+                if is_active && multiplier.abs() > limit {
+                    self.flowing[index] = Flowing::of(multiplier, limit);
+                    change.x = self.flowing[index].sign() * limit - multiplier;
+                    self.active[index].x = 0.0;
+                    is_any = true;
+                } else if is_against {
+                    self.flowing[index] = Flowing::Not;
+                    self.active[index].x = 1.0;
+                    is_any = true;
+                }
+            }
+            self.change.push(change);
+        }
+        if is_any {
+            self.push(step, structure);
+        }
+        is_any
+    }
+
+    /// The same with those that have given way pushing as they do.
+    fn solve_held(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
         let mut solves = 0;
         while let Some(worst) = self.farthest_off(step, structure)? {
             if solves == MOST_SOLVES {
@@ -520,12 +698,8 @@ impl Bound {
 
     /// Changes multipliers so that relations change by `h²` times what stands in their change, and where the step leads with them.
     fn apply(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
-        let square = step.timestep * step.timestep;
         structure.solve(&mut self.change)?;
-        structure.spread(square, &self.change, &self.gradients, &self.inverse_masses, &mut self.places);
-        for (multiplier, change) in self.multipliers.iter_mut().zip(&self.change) {
-            *multiplier += *change;
-        }
+        self.push(step, structure);
         Ok(())
     }
 
@@ -588,8 +762,9 @@ impl Bound {
             let now = binding.value(*relation, positions, start);
             self.now.push(now);
             let memory = &next.memory[system.memory_range(*force)];
-            let earlier = self.earlier(step, structure, index, (positions, memory));
-            let wanted = binding.wanted(*relation, earlier, now, start, timestep);
+            let flow = Vec3::X * flow(memory, binding.relation_count(), *relation);
+            let earlier = self.earlier(step, structure, index, (positions, memory)).from(flow);
+            let wanted = flow + binding.wanted(*relation, earlier, now - flow, start, timestep);
             let entries = structure.starts[index]..structure.starts[index + 1];
             if !(now.is_finite() && self.gradients[entries].iter().all(|gradient| gradient.is_finite())) {
                 return Err(fault(step, structure, index, "has no value, or no slope, where masses are"));
@@ -619,8 +794,8 @@ impl Bound {
         if binding.is_told(relation) {
             return Earlier::Value(before());
         }
-        let remembered = earlier(memory, relation);
-        let kind = memory[known_at(memory)];
+        let count = binding.relation_count();
+        let (remembered, kind) = (earlier(memory, count, relation), memory[known_at(count)]);
         if kind == known::RATES {
             return Earlier::Rate(remembered);
         }
@@ -683,7 +858,9 @@ impl Bound {
             let inverse = &self.inverse_masses[structure.rows[*a as usize] as usize];
             let product =
                 (self.gradients[*a as usize] * *inverse).mul_transpose(&self.gradients[*b as usize]);
-            structure.matrix.add_at(*slot as usize, &product);
+            let [row, column] =
+                [a, b].map(|entry| Mat3::from_diagonal(self.active[structure.relation_of(*entry)]));
+            structure.matrix.add_at(*slot as usize, &(row * product * column));
         }
         for (relation, active) in self.active.iter().enumerate() {
             let slot = structure.matrix.pattern().diagonal_slot(relation);
@@ -715,6 +892,9 @@ impl Bound {
             }
             self.off.push(off);
             for component in 0..3 {
+                if component == 0 && self.flowing[index] != Flowing::Not {
+                    continue;
+                }
                 let (off, near) = (off[component].abs(), self.near[index][component]);
                 let by = if off <= near { 0.0 } else { off / near };
                 if by > 0.0 && worst.is_none_or(|(_, known)| by > known) {
@@ -725,13 +905,23 @@ impl Bound {
         Ok(worst.map(|(index, _)| index))
     }
 
-    /// Adds the change of forces to those on rows, along what is free, and remembers multipliers and work.
-    fn give(&self, system: &System, structure: &Structure, next: &mut SystemState, row_force: &mut [Vec3]) {
+    /// Adds the change of forces to those on rows, along what is free, and remembers multipliers, flows and work.
+    fn give(&self, step: &Step, structure: &Structure, next: &mut SystemState, row_force: &mut [Vec3]) {
+        let system = step.system;
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
+            let Some(binding) = system.binding(*force) else { continue };
             let memory = &mut next.memory[system.memory_range(*force)];
-            let multiplier = Mat3::from_diagonal(self.scales[index]) * self.multipliers[index];
+            let count = binding.relation_count();
+            let mut multiplier = Mat3::from_diagonal(self.scales[index]) * self.multipliers[index];
+            if let Some(limit) = binding.yields_at(*relation).filter(|_| self.flowing[index] != Flowing::Not)
+            {
+                // the limit itself, by which the next step knows that it flows
+                multiplier.x = self.flowing[index].sign() * limit;
+                let value = binding.value(*relation, &self.places, step.end());
+                memory[memory_len(count) + relation] += (value - self.wanted[index]).x;
+            }
             set_multiplier(memory, *relation, multiplier);
-            set_earlier(memory, *relation, known::VALUES, self.now[index]);
+            set_earlier(memory, (count, *relation), known::VALUES, self.now[index]);
             for entry in structure.starts[index]..structure.starts[index + 1] {
                 let row = structure.rows[entry] as usize;
                 let whole = self.gradients[entry].transpose_apply(self.multipliers[index]);
@@ -751,7 +941,8 @@ impl Bound {
         for (force, relation) in relations {
             let Some(binding) = step.system.binding(*force) else { continue };
             let rate = binding.rate(*relation, positions, &self.led, step.start);
-            set_earlier(&mut memory[step.system.memory_range(*force)], *relation, known::RATES, rate);
+            let memory = &mut memory[step.system.memory_range(*force)];
+            set_earlier(memory, (binding.relation_count(), *relation), known::RATES, rate);
         }
     }
 
@@ -775,6 +966,7 @@ impl Bound {
         let matrices = self.gradients.capacity() + self.inverse_masses.capacity();
         vectors.into_iter().map(|vector| size_of::<Vec3>() * vector.capacity()).sum::<usize>()
             + size_of::<Mat3>() * matrices
+            + size_of::<Flowing>() * self.flowing.capacity()
             + self.contacts.bytes()
             + self.structure.as_ref().map_or(0, |structure| {
                 size_of_val(structure.products.as_slice())

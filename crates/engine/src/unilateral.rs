@@ -17,7 +17,7 @@
 
 use souple_math::{Mat3, Vec3};
 
-use crate::binding::Structure;
+use crate::binding::{Solved, Structure};
 use crate::state::{Pair, SystemState, pairs_of};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::System;
@@ -111,6 +111,8 @@ pub trait Unilateral: Send + Sync {
 pub(crate) struct Moving<'a> {
     pub step: &'a Step<'a>,
     pub structure: &'a Structure,
+    /// How relations were solved for last.
+    pub solved: Solved,
     /// Where the step starts [m].
     pub positions: &'a [Vec3],
     /// One step before [m].
@@ -270,7 +272,17 @@ impl ContactSystem {
             false => self.seek_more(moving, state, places)?,
         };
         self.measure(moving, state, places)?;
-        if self.sought.is_empty() || !is_more && self.is_solved() {
+        if self.sought.is_empty() {
+            return Ok(false);
+        }
+        // what follows asks how contacts move each other, that a step is given up too
+        if is_more {
+            self.lay_out(moving);
+        }
+        if is_more || moving.solved == Solved::WithOthers {
+            self.fill(moving)?;
+        }
+        if !is_more && self.is_solved() {
             return Ok(false);
         }
         if self.rounds == MOST_ROUNDS || self.report.contact_iterations >= MOST_SWEEPS {
@@ -282,10 +294,6 @@ impl ContactSystem {
                 .off
                 .iter()
                 .fold(0.0, |most, off| off.to_array().map(f64::abs).into_iter().fold(most, f64::max));
-        }
-        if is_more {
-            self.lay_out(moving);
-            self.fill(moving)?;
         }
         self.solve(is_first);
         for (place, contact) in self.sought.iter().enumerate() {
@@ -456,8 +464,6 @@ impl ContactSystem {
             self.columns.truncate(first + kept);
             self.starts.push(self.columns.len());
         }
-        self.blocks.clear();
-        self.blocks.resize(self.columns.len(), Mat3::ZERO);
     }
 
     /// Where those that touch a body are in the list.
@@ -475,6 +481,8 @@ impl ContactSystem {
     // D = h² J (W − W Gᵀ (G W Gᵀ)⁻¹ G W) Jᵀ
     fn fill(&mut self, moving: &Moving) -> Result<(), StepError> {
         let square = moving.step.timestep * moving.step.timestep;
+        self.blocks.clear();
+        self.blocks.resize(self.columns.len(), Mat3::ZERO);
         for place in 0..self.sought.len() {
             let contact = self.contacts[self.sought[place] as usize];
             for slot in self.starts[place]..self.starts[place + 1] {

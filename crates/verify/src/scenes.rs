@@ -85,6 +85,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("modal_spinning", include_str!("../../../scenes/modal_spinning/scene.toml")),
     ("moulded_figures", include_str!("../../../scenes/moulded_figures/scene.toml")),
     ("moulded_ground", include_str!("../../../scenes/moulded_ground/scene.toml")),
+    ("moulded_rods", include_str!("../../../scenes/moulded_rods/scene.toml")),
     ("network_collision", include_str!("../../../scenes/network_collision/scene.toml")),
     ("network_driven", include_str!("../../../scenes/network_driven/scene.toml")),
     ("network_free_fall", include_str!("../../../scenes/network_free_fall/scene.toml")),

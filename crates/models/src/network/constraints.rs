@@ -5,6 +5,8 @@
 //! `r (D_n + h (D'_n + D_n/τ))` where no step led to where masses are: at the start, and after edits. That is what a step is told to end at
 //! ([`souple_engine::binding`]). What holds and does not change stays, at any step; with `τ = 0` what does not hold does after one.
 //!
+//! Such forces may have a limit, beyond which what they keep gives way and stays as it was moulded: a perfectly plastic constraint.
+//!
 //! By the augmented Lagrangian (Platt & Barr 1988) they are `−Jᵀ (λ + c g + z ġ)` with `λ' = k g`: an ordinary force, for any stepper, that
 //! keeps the relation in the end only. A mass on such a spring is stable where `z c > k m`, with its own mass `m` and `z` from whatever damps it.
 
@@ -26,6 +28,10 @@ pub enum Keeping {
     /// By forces that the step solves for, approached within the time `τ` [s].
     Exact {
         time: f64,
+    },
+    /// Likewise, at once, by multipliers of at most `limit`; where more would be needed the relation flows.
+    Yielding {
+        limit: f64,
     },
     Augmented(Augmented),
 }
@@ -165,6 +171,13 @@ impl Binding for Constraints {
         }
     }
 
+    fn yields_at(&self, _relation: usize) -> Option<f64> {
+        match self.keeping {
+            Keeping::Yielding { limit } => Some(limit),
+            Keeping::Exact { .. } | Keeping::Augmented(_) => None,
+        }
+    }
+
     fn describe(&self, relation: usize) -> String {
         let it = &self.relations[relation];
         format!("{} (number {relation})", it.describe())
@@ -194,7 +207,10 @@ impl Force for Constraints {
     }
 
     fn memory_len(&self) -> usize {
-        binding::memory_len(self.relations.len())
+        match self.keeping {
+            Keeping::Yielding { .. } => binding::yielding_memory_len(self.relations.len()),
+            Keeping::Exact { .. } | Keeping::Augmented(_) => binding::memory_len(self.relations.len()),
+        }
     }
 
     fn tangent_reads_memory(&self) -> bool {
@@ -204,7 +220,7 @@ impl Force for Constraints {
     // E = Σ ½ c g²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let stored = match self.keeping {
-            Keeping::Exact { .. } => 0.0,
+            Keeping::Exact { .. } | Keeping::Yielding { .. } => 0.0,
             Keeping::Augmented(Augmented { stiffness, .. }) => {
                 let values = self.relations.iter().map(|relation| relation.value(at.positions, at.time));
                 values.map(|g| 0.5 * stiffness * g.length_sq()).sum()
@@ -288,7 +304,8 @@ impl Force for Constraints {
     }
 
     fn binding(&self) -> Option<&dyn Binding> {
-        matches!(self.keeping, Keeping::Exact { .. }).then_some(self as &dyn Binding)
+        matches!(self.keeping, Keeping::Exact { .. } | Keeping::Yielding { .. })
+            .then_some(self as &dyn Binding)
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {

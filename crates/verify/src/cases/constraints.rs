@@ -51,6 +51,14 @@ const CORE: Case = Case {
     ..RODS
 };
 
+const MOULDED: Case = Case {
+    scene: "moulded_rods",
+    reading: Reading::component("drawn", 1),
+    mutation: "networks.drawn.constraints[0].yields_at=20.01",
+    source: "specification §6.2, PA-18: mouldability, as a constraint with a limit",
+    ..RODS
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "rod_pendulum_swings",
@@ -321,5 +329,45 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(1e-13),
         mutation: "networks.spun.masses.skin.mass=0.10001",
         ..CORE
+    },
+    Case {
+        id: "rod_yields",
+        what: "place of a weight on a rod beyond what that bears, after 0.2 s: −½ (g + F/m − Y/m) t²",
+        reading: Reading::component("drawn", 1).after(200),
+        reference: -0.0962,
+        // parabolas are exact: rounding of places
+        tolerance: Tolerance::Absolute(1e-12),
+        ..MOULDED
+    },
+    Case {
+        id: "rod_stays_moulded",
+        what: "how far it is drawn out in the end, when the load is gone since 0.2995 s",
+        // ½ a t² + (a t)²/(2 b), a = 4.81 m/s², b = (20 − 9.81) m/s²
+        reference: -0.317_560_011_653_581_9,
+        // it stops within a step: of (a + b) h²/4
+        tolerance: Tolerance::Absolute(4e-6),
+        ..MOULDED
+    },
+    Case {
+        id: "rod_holds_below_limit",
+        what: "how far another is drawn out, whose load it bears",
+        reading: Reading::component("held", 1),
+        reference: 0.0,
+        // 1e-12 of half a metre at both ends
+        tolerance: Tolerance::Absolute(1e-12),
+        mutation: "networks.held.constraints[0].yields_at=19.8",
+        ..MOULDED
+    },
+    Case {
+        id: "legs_are_crushed",
+        what: "what the legs of a table that lands are crushed by: v²/(2 (4 Y/m − g))",
+        settings: &["systems.main.steps_per_period=10"],
+        reading: Reading::component("top", 1),
+        // v²/2 over (4 · 30 N/4 kg − g): the feet, of a gram each, stop at once
+        reference: -0.099_058_940_069_341_26,
+        // impacts are met at a step: a velocity off by 30 m/s² h/2 = 1.5 mm/s, which 2 v/2 (30 m/s² − g) makes a way of 0.15 mm
+        tolerance: Tolerance::Absolute(1.6e-4),
+        mutation: "networks.table.constraints[1].yields_at=30.2",
+        ..MOULDED
     },
 ];

@@ -75,7 +75,11 @@ pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, in
         making.check_sides(&constraints)?;
         return Some(Made::Sided(constraints));
     }
-    let keeping = spec.augmented.map_or(Keeping::Exact { time: spec.time }, Keeping::Augmented);
+    let exact = match spec.yields_at {
+        Some(limit) => Keeping::Yielding { limit },
+        None => Keeping::Exact { time: spec.time },
+    };
+    let keeping = spec.augmented.map_or(exact, Keeping::Augmented);
     let constraints = Constraints::new(name, relations, keeping);
     making.check_start(&constraints, keeping)?;
     Some(Made::Kept(constraints))
@@ -445,7 +449,7 @@ impl Making<'_> {
                     );
                     return self.refuse(Code::Conflict, message, "masses that start elsewhere");
                 }
-                if keeping == (Keeping::Exact { time: 0.0 }) {
+                if matches!(keeping, Keeping::Exact { time: 0.0 } | Keeping::Yielding { .. }) {
                     let message = format!(
                         "{} is off by {off:.3e} at the start, and would be put right within a step",
                         relation.describe()

@@ -241,6 +241,12 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
             "of the critically damped motion by which what does not hold at the start comes to hold; within a step where it is 0",
         )
         .or(Value::Number(0.0)),
+        Key::number(
+            "yields_at",
+            "",
+            Range::POSITIVE,
+            "of a rod [N], an angle [N m], an area [N/m] or a volume [Pa]: the most that keeps it; beyond that it gives way, and stays as it was moulded",
+        ),
         Key::new("augmented", Shape::Table(&AUGMENTED), "kept by an augmented Lagrangian, and not exactly"),
     ],
 );
@@ -255,6 +261,8 @@ pub struct ConstraintSpec {
     /// [s]
     pub time: f64,
     pub augmented: Option<Augmented>,
+    /// The greatest multiplier; none where `None`.
+    pub yields_at: Option<f64>,
     /// From which side it holds; from both where `None`.
     pub sense: Option<Sense>,
     pub law: ImpactLaw,
@@ -344,6 +352,7 @@ impl ConstraintSpec {
             _ => Sense::AtLeast,
         });
         check_sense(kind.as_ref(), sense, reader, &refuse);
+        check_yielding(kind.as_ref(), reader, &refuse);
         let law =
             ImpactLaw { restitution: reader.number("restitution"), friction: reader.number("friction") };
         let kind_site = written.first().map_or_else(|| reader.site(), |kind| reader.site_of(kind));
@@ -353,6 +362,7 @@ impl ConstraintSpec {
             kind,
             time: reader.number("time"),
             augmented,
+            yields_at: reader.maybe_number("yields_at"),
             sense,
             law,
             radius: reader.number("radius"),
@@ -411,6 +421,31 @@ fn check_sense(
     }
     if is_rod && sense == Some(Sense::AtMost) && reader.number("friction") > 0.0 {
         refuse("friction", "a string has nothing to rub on", "friction of what keeps masses apart");
+    }
+}
+
+/// Refuses yielding of what has several multipliers, and what else would say how a constraint is kept.
+fn check_yielding(kind: Option<&ConstraintKind>, reader: &Reader, refuse: &impl Fn(&str, &str, &str)) {
+    let Some(kind) = kind.filter(|_| reader.has("yields_at")) else { return };
+    if !matches!(
+        kind,
+        ConstraintKind::Rod(..)
+            | ConstraintKind::Angle(..)
+            | ConstraintKind::Area(..)
+            | ConstraintKind::Volume(..)
+    ) {
+        refuse(
+            "yields_at",
+            "this constraint does not give way",
+            "`yields_at` of a rod, an angle, an area or a volume",
+        );
+    }
+    for key in reader.written(&["time", "augmented", "sense"]) {
+        refuse(
+            key,
+            "what gives way holds at once, exactly and from both sides",
+            "`yields_at`, or no such key",
+        );
     }
 }
 
