@@ -10,7 +10,7 @@ use crate::control::Control;
 use crate::coupling::CouplingSpring;
 use crate::detection::{Detection, Detector};
 use crate::edit::{Command, Edit, EditError};
-use crate::force::{Configuration, Force, Scratch};
+use crate::force::{Configuration, ContactPoint, Force, Scratch};
 use crate::hand::is_hand_name;
 use crate::interruption::Interruption;
 use crate::snapshot::SnapshotError;
@@ -74,6 +74,8 @@ pub struct FieldStep<'a> {
 pub struct CommittedRows<'a> {
     systems: &'a [System],
     workspaces: &'a [SystemWorkspace],
+    states: &'a [SystemState],
+    around: Surroundings<'a>,
 }
 
 impl<'a> CommittedRows<'a> {
@@ -93,6 +95,15 @@ impl<'a> CommittedRows<'a> {
     pub fn moved(&self, system: usize, force: usize) -> Option<&'a [Vec3]> {
         let levels = self.systems[system].forces[force].levels()?;
         Some(levels.moved(&self.workspaces[system].scratches[force]))
+    }
+
+    /// Calls `visit` for every point of a system that touches something, with the name of the contact.
+    pub fn visit_contacts(&self, system: usize, visit: &mut dyn FnMut(&str, &ContactPoint)) {
+        let (model, rows) = (&self.systems[system], &self.workspaces[system].rows);
+        for (index, force) in model.forces.iter().enumerate() {
+            let at = model.view(index, rows, &self.states[system], &self.around);
+            force.visit_contacts(&at, &mut |point| visit(force.name(), point));
+        }
     }
 }
 
@@ -337,7 +348,12 @@ impl World {
 
     /// The rows of all systems as fields read them.
     pub fn committed_rows(&self) -> CommittedRows<'_> {
-        CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems }
+        CommittedRows {
+            systems: &self.model.systems,
+            workspaces: &self.workspace.systems,
+            states: &self.state.systems,
+            around: Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 },
+        }
     }
 
     /// Rows of a system as committed.
@@ -652,9 +668,8 @@ impl World {
     fn drive(&mut self, start: f64, next: &mut State) {
         for control in &self.model.controls {
             let slot = control.driven();
-            let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
             let before = next.driven[slot];
-            let value = control.value(start, self.model.period, rows, before);
+            let value = control.value(start, self.model.period, self.committed_rows(), before);
             if value == before {
                 continue;
             }
@@ -696,9 +711,15 @@ impl World {
             return Ok(());
         }
         let clock = Instant::now();
-        let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
+        let State { systems: states, fields, driven, .. } = next;
+        let rows = CommittedRows {
+            systems: &self.model.systems,
+            workspaces: &self.workspace.systems,
+            states,
+            around: Surroundings { driven, fields: &self.state.fields, load: 1.0 },
+        };
         let scratches = &mut self.workspace.field_scratches;
-        for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
+        for ((field, state), scratch) in self.model.fields.iter().zip(fields).zip(scratches) {
             let step =
                 FieldStep { start, timestep: self.model.period, interruption: &self.workspace.interruption };
             let stepped = field.step(rows, &step, state, scratch);

@@ -8,6 +8,7 @@ pub mod contact;
 pub mod derive;
 pub mod frames;
 pub mod loads;
+pub mod marks;
 pub mod materials;
 pub mod multiresolution;
 pub mod network;

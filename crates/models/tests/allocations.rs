@@ -23,6 +23,7 @@ use souple_models::loads::{
     Attachments, Combination, Drag, FormulaVector, Gravity, GroundSpring, GroundSprings, Link, MassDamping,
     PointLoad, RigidMotion,
 };
+use souple_models::marks::{Heat, Kept, MarkingLaw, Marks};
 use souple_models::materials::{self, Material};
 use souple_models::multiresolution::{
     Choice, Coupling, LevelsDescription, LevelsForce, Loops, PLACE_VARIABLES, Stiffness,
@@ -342,7 +343,7 @@ const LAW: ContactLaw = ContactLaw {
     thickness: 0.01,
 };
 
-/// A block pressed on a closed surface, and two blocks on each other.
+/// A block pressed on a closed surface, which marks it, and two blocks on each other.
 fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
     let (system, low) = PLAIN.system(stepper);
     let mesh = mesh([6.0, 3.0, 3.0], "tet4");
@@ -394,7 +395,15 @@ fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
         Box::new(SurfaceContact::new("pair", side(0), side(count as u32), LAW, 0.1).unwrap()),
     ];
     let system = System { kinematics, mass, forces, constraints: vec![], ..system };
-    start((system, [low, above].concat()), period)
+    let law = MarkingLaw { whitening_pressure: 10.0, whitening_time: 0.1, refill_time: 0.5, burn_dose: 1.0 };
+    let areas = vec![0.01; surface.points.len()];
+    let heats = vec![Heat { contact: "ground".into(), flux: 1.0 }];
+    let marks = Marks::new("marks".into(), [0, 0], (&surface, count), areas, law, heats);
+    let fields = vec![marks.start()];
+    let state =
+        State { systems: vec![system.initial_state([low, above].concat())], fields, ..State::default() };
+    let kept = Box::new(Kept(Arc::new(marks)));
+    Model { period, systems: vec![system], fields: vec![kept], ..Model::default() }.start(state)
 }
 
 /// Pairs of a contact are searched, merged and felt every step; their lists have grown before.

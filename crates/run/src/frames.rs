@@ -7,11 +7,11 @@ use souple_engine::{Adapted, Force, Model, World};
 use souple_io::{Facets, Field, Output, Precision, Series, write_mesh};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
-use souple_scene::{BodyInfo, DressInfo, SkinInfo};
+use souple_scene::{BodyInfo, DressInfo, MarksInfo, SkinInfo};
 
 use crate::Session;
 use crate::output::{FRAMES, OutputError, OutputFolder};
-use crate::show::Moment;
+use crate::show::{Moment, TISSUE};
 
 /// Writes frames at even distances; none where the run has no folder.
 pub struct Frames {
@@ -314,9 +314,21 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
         .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
     let (radius, of_links) = crate::links::fields(world, body);
     point_fields.extend(radius);
+    point_fields.extend(body.marks.iter().flat_map(|marks| fields_of_marks(marks, positions.len(), world)));
     let mut of_cells = cell_fields(world, body);
     of_cells.extend(of_links);
     (point_fields, of_cells)
+}
+
+/// What tools left on the surface, nothing inside: whitening, dose, and how both look.
+fn fields_of_marks(marks: &MarksInfo, point_count: usize, world: &World) -> [Field; 3] {
+    let at_points = |value: &dyn Fn(usize) -> f64| (0..point_count).map(value).collect();
+    let at = |point: usize| marks.marks_at(point, world).unwrap_or_default();
+    [
+        Field::new("whitening", 1, at_points(&|point| at(point).0)),
+        Field::new("burn", 1, at_points(&|point| at(point).1)),
+        Field::new(TISSUE, 1, at_points(&|point| marks.look_at(point, world))),
+    ]
 }
 
 fn flat(vectors: &[Vec3]) -> Vec<f64> {

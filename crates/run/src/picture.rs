@@ -1,17 +1,18 @@
 //! The picture of the last state, and the plots of the probes.
 
+use souple_io::picture::EdgeStyle;
 use souple_io::plot::{Axis, Curve, Plot};
 use souple_scene::spec::picture::PictureView;
 
 use crate::output::{OutputError, OutputFolder};
-use crate::show::{Figure, Moment, Show, ShowError, Stage};
+use crate::show::{Figure, Moment, Show, ShowError, Stage, TISSUE, map_of};
 use crate::{Session, Trace};
 
 /// The picture of the last state.
 pub const PICTURE: &str = "last.png";
 
-/// All bodies of a moment, coloured by the von Mises stress of their cells, and the shapes they touch, into the folder
-/// of a run.
+/// All bodies of a moment, coloured by the von Mises stress of their cells, or by what tools left on surfaces where any shows
+/// that, and the shapes they touch, into the folder of a run.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -26,7 +27,11 @@ pub fn write_last(
     stage.title = title.to_owned();
     let moment = moment.without_worn();
     let show = Show { stage, moments: Vec::new() };
-    let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
+    let mut figure = Figure { samples_per_pixel: 2, ..Figure::default() };
+    if moment.has_field(TISSUE) {
+        let colours = map_of(TISSUE).unwrap_or_default();
+        figure = Figure { colour_by: Some(TISSUE.to_owned()), colours, edges: EdgeStyle::Hidden, ..figure };
+    }
     let plain = Figure { colour_by: None, ..figure.clone() };
     // bodies without stress are shown in colours of their own
     let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {

@@ -12,6 +12,7 @@ use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::{Carried, FramesReport};
+use souple_models::marks::Marks;
 use souple_models::materials::Material;
 use souple_models::multiresolution::Dress;
 use souple_models::solids::keeps_texts;
@@ -86,6 +87,8 @@ pub struct BodyInfo {
     pub reduced: Option<ReducedInfo>,
     /// The surface that is shown in the place of its own.
     pub dress: Option<DressInfo>,
+    /// What tools leave on its surface.
+    pub marks: Option<MarksInfo>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
     /// where no body is a network.
     pub radii: Vec<f64>,
@@ -181,6 +184,31 @@ impl FramesInfo {
     pub fn influence(&self, point: usize) -> f64 {
         let of_shown = |(frame, _): &&(u32, f64)| *frame as usize == self.shown;
         self.weights[point].iter().find(of_shown).map_or(0.0, |(_, weight)| *weight)
+    }
+}
+
+/// What tools leave on the surface of a body, and where it is in the state.
+#[derive(Clone, Debug)]
+pub struct MarksInfo {
+    pub body: String,
+    /// Index of its field.
+    pub field: usize,
+    pub marks: Arc<Marks>,
+}
+
+impl MarksInfo {
+    fn state<'a>(&self, world: &'a World) -> &'a FieldState {
+        &world.state().fields[self.field]
+    }
+
+    /// Of a point of the body how white it is, 0 to 1, and its dose [J/m²]; `None` inside.
+    pub fn marks_at(&self, point: usize, world: &World) -> Option<(f64, f64)> {
+        self.marks.marks_at(point, self.state(world))
+    }
+
+    /// How a point of the body looks: 1 where it is white, 0 as it was and inside, -1 where it is charred.
+    pub fn look_at(&self, point: usize, world: &World) -> f64 {
+        self.marks.look_at(point, self.state(world))
     }
 }
 
@@ -406,6 +434,7 @@ impl BodyInfo {
             frames,
             reduced,
             dress: None,
+            marks: None,
             radii,
             contours,
         }

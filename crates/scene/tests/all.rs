@@ -11,6 +11,7 @@ mod frames;
 mod hanging;
 mod heat;
 mod liver;
+mod marks;
 mod material_fields;
 mod modes;
 mod modules;

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use souple_engine::{CellField, LinkShown, World};
-use souple_io::picture::Colour;
+use souple_io::picture::{Colour, ColourMap};
 use souple_math::Vec3;
 use souple_run::Session;
-use souple_scene::BodyInfo;
+use souple_scene::{BodyInfo, MarksInfo};
 use souple_table::{Entry, Table};
 
 use crate::classes::{Classes, KINDS, LAWS, LEVELS};
@@ -18,6 +18,8 @@ use crate::session::Shown;
 pub struct Field {
     pub unit: &'static str,
     pub source: Source,
+    /// The map whose colours its numbers have, where these are how bodies look; `None` of numbers to be read by any map.
+    pub look: Option<ColourMap>,
 }
 
 /// Where the number comes from.
@@ -25,6 +27,8 @@ pub struct Field {
 pub enum Source {
     /// Of a point, by its number in the mesh.
     Point(fn(&World, &BodyInfo, usize) -> f64),
+    /// Of a point, by its number in the mesh, of bodies whose surfaces show what tools leave on them.
+    Marks(fn(&World, &MarksInfo, usize) -> f64),
     /// Of each point of the mesh, of a frame that carries it.
     Influence,
     /// Of the cells about a point, in the mean.
@@ -41,7 +45,13 @@ const fn entry(
     source: Source,
     summary: &'static str,
 ) -> Entry<Field> {
-    Entry { name, summary, source: "", parameters: &[], build: Field { unit, source } }
+    Entry { name, summary, source: "", parameters: &[], build: Field { unit, source, look: None } }
+}
+
+/// What bodies look like, by a map whose colours mean something of their own.
+const fn look(name: &'static str, map: ColourMap, source: Source, summary: &'static str) -> Entry<Field> {
+    let build = Field { unit: "", source, look: Some(map) };
+    Entry { name, summary, source: "", parameters: &[], build }
 }
 
 /// All fields; adding one is a line.
@@ -72,6 +82,24 @@ pub static FIELDS: Table<Field> = Table {
             "N",
             Source::Links(|link| link.push),
             "of links, positive where they push their ends apart",
+        ),
+        &look(
+            "tissue",
+            ColourMap::Tissue,
+            Source::Marks(|world, marks, point| marks.look_at(point, world)),
+            "how surfaces look: 1 where they are white, 0 as they were, -1 where they are charred",
+        ),
+        &entry(
+            "whitening",
+            "",
+            Source::Marks(|world, marks, point| marks.marks_at(point, world).unwrap_or_default().0),
+            "how white surfaces are where they are pressed",
+        ),
+        &entry(
+            "burn",
+            "J/m²",
+            Source::Marks(|world, marks, point| marks.marks_at(point, world).unwrap_or_default().1),
+            "heat per area that surfaces have taken up",
         ),
         &entry("element", "", Source::Classes(KINDS), "the kinds of elements"),
         &entry("law", "", Source::Classes(LAWS), "the law of each element, also where it changes"),
@@ -179,6 +207,11 @@ impl Field {
                 let value = |point: &u32| value(world, body, *point as usize) as f32;
                 Some(Read::Numbers(points.iter().map(value).collect()))
             }
+            Source::Marks(value) => {
+                let marks = body.marks.as_ref()?;
+                let value = |point: &u32| value(world, marks, *point as usize) as f32;
+                Some(Read::Numbers(points.iter().map(value).collect()))
+            }
             Source::Influence => {
                 let frames = body.frames.as_ref()?;
                 let value = |point: &u32| frames.influence(*point as usize) as f32;
@@ -211,6 +244,7 @@ impl Field {
         let bodies = &session.bodies;
         match self.source {
             Source::Point(_) => !bodies.is_empty(),
+            Source::Marks(_) => bodies.iter().any(|body| body.marks.is_some()),
             Source::Influence => bodies.iter().any(|body| body.frames.is_some()),
             Source::Cells(_) => {
                 let has_cells = |body: &BodyInfo| {
@@ -233,7 +267,7 @@ impl Field {
         match self.source {
             Source::Links(_) => "links",
             Source::Classes(_) => "cells",
-            Source::Point(_) | Source::Influence | Source::Cells(_) => "points",
+            Source::Point(_) | Source::Marks(_) | Source::Influence | Source::Cells(_) => "points",
         }
     }
 

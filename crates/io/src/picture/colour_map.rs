@@ -19,6 +19,8 @@ pub enum ColourMap {
     /// From green to red as a value nears one, blue below zero: elements by their criterion, and those that have changed
     /// their law.
     Adaptation,
+    /// From charred brown through the red of an organ to the white of one without blood.
+    Tissue,
     /// One colour for each kind of element, by [`ELEMENT_KINDS`].
     Elements,
 }
@@ -70,6 +72,13 @@ pub static COLOUR_MAPS: Table<ColourMap> = Table {
             build: ColourMap::Adaptation,
         },
         &Entry {
+            name: "tissue",
+            summary: "charred below zero, the red of an organ, pale where it is pressed; its range is -1 to 1",
+            source: "Debunne 2000, 5 §5.1",
+            parameters: &[],
+            build: ColourMap::Tissue,
+        },
+        &Entry {
             name: "elements",
             summary: "a colour for each kind of element: tetrahedra dark blue, hexahedra yellow, prisms cyan, pyramids pink",
             source: "Faure 2014, fig. 6.17",
@@ -82,8 +91,15 @@ pub static COLOUR_MAPS: Table<ColourMap> = Table {
 const MAP_LENGTH: usize = 256;
 
 /// The maps in the order of [`ColourMap`].
-static MAPS: LazyLock<[Vec<Colour>; 5]> = LazyLock::new(|| {
-    [evened(sequential), evened(diverging), evened(grey), stepped(adaptation), stepped(of_kind)]
+static MAPS: LazyLock<[Vec<Colour>; 6]> = LazyLock::new(|| {
+    [
+        evened(sequential),
+        evened(diverging),
+        evened(grey),
+        stepped(adaptation),
+        stepped(tissue),
+        stepped(of_kind),
+    ]
 });
 
 /// Colours at equal steps of the value, with jumps where a function of it has them.
@@ -124,7 +140,7 @@ impl ColourMap {
     /// The values of its first and last colour, for maps whose colours mean something of their own.
     pub fn own_range(self) -> Option<(f64, f64)> {
         match self {
-            Self::Adaptation => Some((-1.0, 1.0)),
+            Self::Adaptation | Self::Tissue => Some((-1.0, 1.0)),
             Self::Elements => Some((-0.5, ELEMENT_KINDS.len() as f64 - 0.5)),
             Self::Sequential | Self::Diverging | Self::Grey => None,
         }
@@ -169,6 +185,16 @@ fn adaptation(t: f64) -> Colour {
 fn of_kind(t: f64) -> Colour {
     let kind = (t * OF_KINDS.len() as f64) as usize;
     Colour::from_screen(OF_KINDS[kind.min(OF_KINDS.len() - 1)])
+}
+
+/// Charred, scorched, as it was, pale and white, with straight lines in linear light between them.
+const TISSUE: [[u8; 3]; 5] = [[26, 20, 18], [92, 50, 30], [150, 52, 46], [206, 140, 124], [240, 222, 208]];
+
+fn tissue(t: f64) -> Colour {
+    let place = t * (TISSUE.len() - 1) as f64;
+    let first = (place as usize).min(TISSUE.len() - 2);
+    let [from, to] = [TISSUE[first], TISSUE[first + 1]].map(Colour::from_screen);
+    from.mixed(to, (place - first as f64) as f32)
 }
 
 /// The colour of this lightness and hue, its chroma no higher than wished and than a screen can show.

@@ -194,8 +194,12 @@ impl ShapeContact {
 
     /// Points that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<Touch> {
+        self.each_touch(at).collect()
+    }
+
+    fn each_touch(&self, at: &Configuration) -> impl Iterator<Item = Touch> {
         let pose = self.pose(at);
-        let touch = |(index, point): (usize, &ContactPoint)| {
+        let touch = move |(index, point): (usize, &ContactPoint)| {
             let local = self.local(index, &pose, at)?;
             let force = self.law.force(point.share, &local.approach, |number| number)?;
             let [normal, friction, stretch] =
@@ -207,7 +211,7 @@ impl ShapeContact {
                 force: ContactForce { normal, friction, stretch, sliding: force.sliding },
             })
         };
-        self.points.iter().enumerate().filter_map(touch).collect()
+        self.points.iter().enumerate().filter_map(touch)
     }
 
     /// Normal force and friction on the body [N]; the shape bears their opposite.
@@ -490,7 +494,7 @@ impl Force for ShapeContact {
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&souple_engine::ContactPoint)) {
-        for touch in self.touches(at) {
+        for touch in self.each_touch(at) {
             visit(&souple_engine::ContactPoint {
                 row: touch.row,
                 against: &[],

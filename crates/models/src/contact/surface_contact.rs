@@ -126,7 +126,11 @@ impl SurfaceContact {
 
     /// Points that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<SurfaceTouch> {
-        at.pairs.iter().filter_map(|pair| self.touch(pair, at)).collect()
+        self.each_touch(at).collect()
+    }
+
+    fn each_touch(&self, at: &Configuration) -> impl Iterator<Item = SurfaceTouch> {
+        at.pairs.iter().filter_map(|pair| self.touch(pair, at))
     }
 
     fn touch(&self, pair: &Pair, at: &Configuration) -> Option<SurfaceTouch> {
@@ -494,7 +498,7 @@ impl Force for SurfaceContact {
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&souple_engine::ContactPoint)) {
-        for touch in self.touches(at) {
+        for touch in self.each_touch(at) {
             let [row, a, b, c] = touch.rows;
             let [wa, wb, wc] = touch.weights;
             visit(&souple_engine::ContactPoint {

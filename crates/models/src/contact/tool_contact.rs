@@ -211,8 +211,12 @@ impl ToolContact {
 
     /// Triangles that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<ToolTouch> {
+        self.each_touch(at).collect()
+    }
+
+    fn each_touch(&self, at: &Configuration) -> impl Iterator<Item = ToolTouch> {
         let pose = self.pose(at);
-        let touch = |pair: &Pair| {
+        let touch = move |pair: &Pair| {
             let (sight, approach, share) = self.approach(pair, &pose, at);
             let force = self.law.force(share, &approach, |number| number)?;
             let [normal, friction, stretch] =
@@ -224,7 +228,7 @@ impl ToolContact {
                 force: ContactForce { normal, friction, stretch, sliding: force.sliding },
             })
         };
-        at.pairs.iter().filter_map(touch).collect()
+        at.pairs.iter().filter_map(touch)
     }
 
     fn approach(&self, pair: &Pair, pose: &Pose, at: &Configuration) -> (Sight, Approach<f64>, f64) {
@@ -546,7 +550,7 @@ impl Force for ToolContact {
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        for touch in self.touches(at) {
+        for touch in self.each_touch(at) {
             for (row, weight) in self.corners[touch.triangle as usize].iter().zip(touch.weights) {
                 visit(&ContactPoint {
                     row: *row,

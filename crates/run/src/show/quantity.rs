@@ -13,6 +13,9 @@ const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// The kind of each cell: what every mesh has, without a field.
 const ELEMENT: &str = "element";
 
+/// How a surface looks that whitens and burns.
+pub(crate) const TISSUE: &str = "tissue";
+
 /// The number of a kind among [`ELEMENT_KINDS`], which has one for linear and quadratic elements alike.
 pub fn number_of(kind: ElementKind) -> usize {
     let name = kind.corners().name().trim_end_matches(|letter: char| letter.is_ascii_digit());
@@ -52,6 +55,7 @@ impl<'a> Quantity<'a> {
     pub fn own_map(&self) -> Option<ColourMap> {
         match self.field {
             ELEMENT => Some(ColourMap::Elements),
+            TISSUE => Some(ColourMap::Tissue),
             "adaptation" => Some(ColourMap::Adaptation),
             _ => None,
         }
@@ -65,6 +69,7 @@ impl<'a> Quantity<'a> {
             "strain_energy_density" => "J/m³",
             "link_force" => "N",
             "radius" => "m",
+            "burn" => "J/m²",
             _ => "",
         }
     }

@@ -15,6 +15,7 @@ mod imposing;
 mod inertial;
 mod levels;
 mod links;
+mod marks;
 mod material_fields;
 mod memory;
 mod modes;
@@ -48,7 +49,7 @@ use souple_haptics::HandTools;
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
-use crate::scene::{BodyInfo, DressInfo, HandInfo, Scene, SkinInfo};
+use crate::scene::{BodyInfo, DressInfo, HandInfo, MarksInfo, Scene, SkinInfo};
 use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
@@ -71,6 +72,7 @@ pub(crate) struct Draft<'a> {
     pub joints: Vec<Joint>,
     pub skins: Vec<SkinInfo>,
     pub dresses: Vec<DressInfo>,
+    pub marks: Vec<MarksInfo>,
     pub hands: Vec<HandInfo>,
 }
 
@@ -120,6 +122,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         joints: Vec::new(),
         skins: Vec::new(),
         dresses: Vec::new(),
+        marks: Vec::new(),
         hands: Vec::new(),
     };
     bones::check(spec, log);
@@ -143,6 +146,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     pins::add(&mut draft);
     skins::add(&mut draft);
     levels::add_dresses(&mut draft);
+    marks::add(&mut draft);
     contact::add(&mut draft);
     hands::add(&mut draft);
     links::attach(&mut draft);
@@ -183,12 +187,13 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     let networks = network::networks(&draft);
-    let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, .. } = draft;
+    let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, marks, .. } = draft;
     model.systems = systems;
     let bodies = bodies.into_iter().zip(contours).map(|(body, contours)| {
         let radii = network::radii(&body, spec);
         let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
-        BodyInfo { dress, ..BodyInfo::new(body, radii, contours) }
+        let marks = marks.iter().find(|marks| marks.body == body.spec.name).cloned();
+        BodyInfo { dress, marks, ..BodyInfo::new(body, radii, contours) }
     });
     Some(Scene {
         title: title(spec, sources),

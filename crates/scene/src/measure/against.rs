@@ -119,6 +119,7 @@ impl Carriers {
             system: other.system,
             rows: (first..first + count).collect(),
             coarser: Vec::new(),
+            marks: None,
             starts: other.mesh.points.clone(),
             whole: other.mass_rows(),
             contact: None,

@@ -27,7 +27,7 @@ use self::against::Reference;
 use self::masses::{Mould, Multitude};
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
-use crate::scene::{DressInfo, HandInfo, SkinInfo};
+use crate::scene::{DressInfo, HandInfo, MarksInfo, SkinInfo};
 use crate::spec::network::{MassGroup, Places};
 use crate::spec::octree::OctreeSpec;
 use crate::spec::probe::{Component, Probe};
@@ -96,6 +96,8 @@ struct Part {
     about: Option<Vec3>,
     /// The force that holds its pinned points, of a body of frames.
     hold: Option<String>,
+    /// The marks on the surface and the points that are looked at, of a probe of marks.
+    marks: Option<(MarksInfo, Vec<u32>)>,
 }
 
 impl Part {
@@ -393,6 +395,10 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
     // pins of a body of modes hold its frame
     let frame = (is_held && body.moves_in_modes()).then(|| body.mass_rows().start as u32);
     let held = frame.map_or_else(|| of_points.iter().map(own).collect(), |origin| vec![origin]);
+    let marks = match probe.quantity.build.is_of_marks() {
+        true => Some(marks_of(probe, body, &points, draft)?),
+        false => None,
+    };
     Some(Part {
         system: body.system,
         held,
@@ -404,7 +410,26 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         contact: probe.contact.clone(),
         about: probe.about,
         hold: body.is_held_by_springs().then(|| hold_name(&body.spec.name)),
+        marks,
     })
+}
+
+/// The marks on the surface of a body, and which of some of its points are there; `None` where there are none, which is reported.
+fn marks_of(probe: &Probe, body: &Placed, points: &[u32], draft: &Draft) -> Option<(MarksInfo, Vec<u32>)> {
+    let Some(marks) = draft.marks.iter().find(|marks| marks.body == body.spec.name) else {
+        let message = format!("the surface of body `{}` shows no marks", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `marks`");
+        return None;
+    };
+    let is_marked = |point: &u32| marks.marks.is_marked(*point as usize);
+    let marked: Vec<u32> = points.iter().copied().filter(is_marked).collect();
+    if marked.is_empty() {
+        let message = format!("this region holds no point on the surface of body `{}`", body.spec.name);
+        let site = probe.region.as_ref().map_or(&probe.site, |region| &region.site);
+        draft.log.add(Code::EmptyRegion, site, message, "a region that reaches the surface");
+        return None;
+    }
+    Some((marks.clone(), marked))
 }
 
 /// The rows that hold the mass of what a probe is of; `None` for a part of a body of frames, whose mass is not parted.

@@ -32,6 +32,8 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
         PointQuantity::ContactTorque => moments(&contact_forces(part, Share::Total, world), part, world),
         PointQuantity::Penetration => return PointValues::Numbers(penetrations(part, world)),
         PointQuantity::ContactResidual => return PointValues::Numbers(residuals(part, world)),
+        PointQuantity::Whitening => return PointValues::Numbers(marks(part, world, |(white, _)| white)),
+        PointQuantity::Burn => return PointValues::Numbers(marks(part, world, |(_, dose)| dose)),
         PointQuantity::Slip => {
             return PointValues::Numbers(of_attachments(part, world, Attachments::slip_of));
         }
@@ -53,6 +55,12 @@ fn constraint_forces(part: &Part, world: &World) -> Vec<Vec3> {
         }
     });
     part.rows.iter().map(|row| forces[*row as usize]).collect()
+}
+
+/// Of each row of the part that is on the surface of a body with marks, one of its marks.
+fn marks(part: &Part, world: &World, mark: fn((f64, f64)) -> f64) -> Vec<f64> {
+    let Some((marks, points)) = &part.marks else { return Vec::new() };
+    points.iter().filter_map(|point| marks.marks_at(*point as usize, world).map(mark)).collect()
 }
 
 /// Of each row of the part the greatest number of the springs that attach it; zero where none does.

@@ -11,6 +11,7 @@ use super::adapt::{ADAPT, AdaptSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
 use super::levels::{LEVELS, LevelsSpec};
+use super::marks::{MARKS, MarksSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::modes::{MODES, ModesSpec};
 use super::network::Network;
@@ -207,6 +208,7 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
         Key::new("springs", Shape::Tables(&SPRING), "springs from points to where they start"),
         Key::new("skin", Shape::Table(&BODY_SKIN), "a skin that dresses it, see `skins`"),
+        Key::new("marks", Shape::Table(&MARKS), "its surface shows where it was pressed and burnt"),
     ],
 );
 
@@ -252,6 +254,8 @@ pub struct Body {
     pub pins: Vec<Pin>,
     pub loads: Vec<Load>,
     pub springs: Vec<Spring>,
+    /// What tools leave on its surface.
+    pub marks: Option<MarksSpec>,
     /// Masses and links in place of a mesh and its material.
     pub network: Option<Network>,
     pub site: Site,
@@ -468,6 +472,7 @@ impl Body {
             pins: reader.tables("pins").iter().map(Pin::read).collect(),
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
+            marks: reader.table("marks").map(|table| MarksSpec::read(&table)),
             network: None,
             site: reader.site(),
         }

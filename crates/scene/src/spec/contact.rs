@@ -45,6 +45,14 @@ pub(super) const THICKNESS: Key =
     Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
         .or(Value::Number(0.0));
 
+pub(super) const HEAT: Key = Key::number(
+    "heat",
+    "W/m^2",
+    Range::NOT_NEGATIVE,
+    "that it gives to the surface it touches, of a body with `marks`",
+)
+.or(Value::Number(0.0));
+
 pub(super) const DETECT: Key = Key::new(
     "detect",
     Shape::Choice(&DETECTIONS),
@@ -202,6 +210,7 @@ pub(crate) static CONTACT: Keys = Keys::new(
         DAMPING,
         TANGENTIAL_STIFFNESS,
         THICKNESS,
+        HEAT,
         RESPONSE,
         FRACTION,
         RESIDUAL,
@@ -242,6 +251,8 @@ pub struct Contact {
     pub damping: f64,
     pub tangential_stiffness: Option<f64>,
     pub thickness: f64,
+    /// Given to what is touched [W/m²].
+    pub heat: f64,
     /// Displacements in the place of the penalty.
     pub imposed: Option<Imposed>,
     pub site: Site,
@@ -292,6 +303,7 @@ impl Contact {
             damping: reader.number("damping"),
             tangential_stiffness: reader.maybe_number("tangential_stiffness"),
             thickness: reader.number("thickness"),
+            heat: reader.number("heat"),
             imposed,
             site: reader.site(),
         }

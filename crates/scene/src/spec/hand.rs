@@ -7,7 +7,7 @@ use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec};
 use super::contact::{
-    Contact, DAMPING, DETECT, Detect, FRACTION, FRICTION, Imposed, PROGRESSIVE, RESIDUAL, RESPONSE,
+    Contact, DAMPING, DETECT, Detect, FRACTION, FRICTION, HEAT, Imposed, PROGRESSIVE, RESIDUAL, RESPONSE,
     TANGENTIAL_STIFFNESS, THICKNESS, WEIGH, Weighing,
 };
 use super::region::Region;
@@ -46,6 +46,7 @@ static TOUCH: Keys = Keys::new(
         DAMPING,
         TANGENTIAL_STIFFNESS,
         THICKNESS,
+        HEAT,
         RESPONSE,
         FRACTION,
         RESIDUAL,
@@ -157,6 +158,7 @@ impl HandSpec {
                 damping: number("damping"),
                 tangential_stiffness: maybe("tangential_stiffness"),
                 thickness: number("thickness"),
+                heat: number("heat"),
                 imposed,
                 site: reader.site(),
             },

@@ -11,6 +11,7 @@ pub mod frames;
 pub mod hand;
 pub mod interaction;
 pub mod levels;
+pub mod marks;
 pub mod mesh;
 pub mod modes;
 pub mod network;

@@ -449,6 +449,7 @@ impl Network {
             polynomial: None,
             levels: None,
             octree: None,
+            marks: None,
             network: Some(network),
             site: reader.site(),
         }

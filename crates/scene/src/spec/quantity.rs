@@ -151,6 +151,8 @@ pub enum PointQuantity {
     ContactResidual,
     Slip,
     Torn,
+    Whitening,
+    Burn,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,6 +240,11 @@ impl Quantity {
         matches!(self.subject, Subject::Cells(CellQuantity::Law | CellQuantity::Excess))
     }
 
+    /// Whether it is of the marks on a surface.
+    pub fn is_of_marks(&self) -> bool {
+        matches!(self.subject, Subject::Points(PointQuantity::Whitening | PointQuantity::Burn))
+    }
+
     /// Whether it is of contacts, of which a probe may choose one.
     pub fn is_of_contact(&self) -> bool {
         matches!(
@@ -258,6 +265,7 @@ const KINEMATICS: &str = "kinematics of points";
 const ATTACHMENT: &str = "own";
 const CONTACT: &str = "Wriggers 2006, §5";
 const COMPLEMENTARITY: &str = "Moreau 1988; Stewart & Trinkle 1996";
+const MARKS: &str = "Debunne 2000, 5 §5.1";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const ADAPTATION: &str = "Faure 2014, §6.4";
@@ -395,6 +403,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "how far contacts whose forces are solved for are from complementarity: how deep they are, or how far what presses is apart",
         COMPLEMENTARITY,
         points("m", Number, Max, PointQuantity::ContactResidual),
+    ),
+    &entry(
+        "whitening",
+        "how white the surface of a body with `marks` is, from 0 to 1",
+        MARKS,
+        points("", Number, Mean, PointQuantity::Whitening),
+    ),
+    &entry(
+        "burn",
+        "heat per area that the surface of a body with `marks` has taken up from what burnt it",
+        MARKS,
+        points("J/m^2", Number, Mean, PointQuantity::Burn),
     ),
     &entry(
         "slip",

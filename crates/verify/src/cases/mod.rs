@@ -25,6 +25,7 @@ mod late;
 mod levels;
 mod loads;
 mod long_beam;
+mod marks;
 mod material_fields;
 mod material_tests;
 mod matter;
@@ -140,6 +141,7 @@ pub const TABLES: &[&[Case]] = &[
     hands::CASES,
     late::CASES,
     tools::CASES,
+    marks::CASES,
     skins::CASES,
 ];
 

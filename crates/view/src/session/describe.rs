@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 use souple_engine::obstacle::{Form, Obstacle, Side};
-use souple_io::picture::{COLOUR_MAPS, Colour};
+use souple_io::picture::{COLOUR_MAPS, Colour, ColourMap};
 use souple_run::Session;
 use souple_scene::{Adjustable, BodyInfo, ProbeInfo, SkinInfo};
 use souple_table::{Entry, Kind};
@@ -124,9 +124,12 @@ impl Stage {
         let Entry { name, summary, build, .. } = field;
         let class = |(name, colour): (String, Colour)| json!({"name": name, "colour": hexadecimal(colour)});
         let classes = build.classes(self.session()).map(|all| all.into_iter().map(class).collect::<Vec<_>>());
+        let scale = build.look.and_then(|map| Some((map, map.own_range()?)));
+        let scale =
+            scale.map(|(map, (low, high))| json!({"colours": colours(map), "low": low, "high": high}));
         json!({
             "name": name, "title": build.title(self.session()), "summary": summary, "unit": build.unit,
-            "of": build.of(), "classes": classes,
+            "of": build.of(), "classes": classes, "scale": scale,
             "is_here": build.is_in(self.session(), self.shown_to_keep()),
         })
     }
@@ -205,14 +208,18 @@ fn adjustable_to_json(adjustable: &Adjustable) -> Value {
     })
 }
 
-/// Colour maps for quantities, as 256 colours of six hexadecimal digits, the same as in pictures.
+/// 256 colours of a map, of six hexadecimal digits each.
+fn colours(map: ColourMap) -> String {
+    (0..256).map(|step| hexadecimal(map.colour(f64::from(step) / 255.0))).collect()
+}
+
+/// Colour maps for quantities, the same as in pictures.
 pub fn colour_maps() -> Value {
-    let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
-        let colour = |step: i32| hexadecimal(entry.build.colour(f64::from(step) / 255.0));
-        let colours: String = (0..256).map(colour).collect();
-        json!({"name": entry.name, "summary": entry.summary, "colours": colours})
+    let map = |entry: &&souple_table::Entry<ColourMap>| {
+        let Entry { name, summary, build, .. } = entry;
+        json!({"name": name, "summary": summary, "colours": colours(*build)})
     };
-    // what has a range of its own stands for classes, which fields have themselves
+    // what has a range of its own stands for classes or for a look, which fields bring themselves
     COLOUR_MAPS.entries.iter().filter(|entry| entry.build.own_range().is_none()).map(map).collect()
 }
 

@@ -248,6 +248,40 @@ fn the_inside_comes_on_demand() {
     page.frame_where(|frame| frame.point_counts == [66]);
 }
 
+/// A body with marks shows what a tool does to it as it looks: its field brings its colours, in which numbers from -1 to 1 stand.
+#[test]
+fn surfaces_whiten_under_tools() {
+    let pressed = r#"
+    [bodies.block.marks]
+    whitening_pressure = "10 Pa"
+    [shapes.ball]
+    shape = { name = "sphere", centre = [0.1, 0.11, 0.1], radius = 0.03 }
+    [[contacts]]
+    name = "ball"
+    body = "block"
+    shape = "ball"
+    "#;
+    let world = World::of(&format!("{BLOCK}{pressed}"));
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    let fields = scene["fields"].as_array().unwrap();
+    let named = |name: &str| fields.iter().find(|field| field["name"] == name).unwrap();
+    let scale = &named("tissue")["scale"];
+    assert_eq!((&scale["low"], &scale["high"]), (&json!(-1.0), &json!(1.0)));
+    assert_eq!(scale["colours"].as_str().map(str::len), Some(6 * 256));
+    for name in ["tissue", "whitening", "burn"] {
+        assert_eq!(named(name)["is_here"], true, "{name}");
+    }
+    assert!(named("whitening")["scale"].is_null());
+    page.wish(json!({"do": "colour", "field": "tissue"}));
+    let white = |frame: &crate::client::Frame| {
+        frame.values.first().is_some_and(|all| all.iter().any(|value| *value > 0.9))
+    };
+    let values = page.frame_where(white).values[0].clone();
+    // only where it is touched
+    assert!(values.iter().filter(|value| **value == 0.0).count() > values.len() / 2, "{values:?}");
+}
+
 /// Colours tell the cells of a surface apart, then those of the inside: by kind, by law, by the mesh at work.
 #[test]
 fn cells_are_told_apart() {

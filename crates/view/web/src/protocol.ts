@@ -78,6 +78,8 @@ export interface FieldInfo {
   of: "points" | "links" | "cells";
   /** What the numbers stand for; null: they are quantities. */
   classes: Class[] | null;
+  /** The colours that its numbers stand for, which nobody chooses: how a surface looks; null: they are quantities, or classes. */
+  scale: Scale | null;
   /** Whether anything in the scene has it. */
   is_here: boolean;
 }
@@ -86,6 +88,13 @@ export interface Class {
   name: string;
   /** Six hexadecimal digits. */
   colour: string;
+}
+
+export interface Scale {
+  /** 256 of six hexadecimal digits, from that of the lowest number to that of the highest. */
+  colours: string;
+  low: number;
+  high: number;
 }
 
 export interface ArrowInfo {

@@ -136,7 +136,8 @@ export class Display {
     this.explodeRow.hidden = !bodies.some(({ has_inside }) => has_inside);
     const here = fields.filter(({ is_here }) => is_here);
     this.field.replaceChildren(element("option", { value: "" }, "Material"), ...here.map(entry));
-    const wanted = remembered("field") ?? "";
+    // bodies are shown as they look
+    const wanted = remembered("field") ?? here.find(({ scale }) => scale !== null)?.name ?? "";
     this.field.value = here.some((field) => field.name === wanted) ? wanted : "";
     this.read();
   }

@@ -33,8 +33,9 @@ export class Legend {
   set(field: FieldInfo | null, map: ColourMap | undefined, arrows: ArrowInfo | null): void {
     this.field = field;
     this.arrows = arrows;
-    if (!map) return;
-    this.stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${map.colours.slice(6 * i, 6 * i + 6)}`);
+    const colours = field?.scale?.colours ?? map?.colours;
+    if (!colours) return;
+    this.stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${colours.slice(6 * i, 6 * i + 6)}`);
     this.bar.style.background = `linear-gradient(to right, ${this.stops.join(", ")})`;
   }
 

@@ -42,6 +42,27 @@ const OVERLAP = 4e-4;
 /** Beyond so many sizes of all bodies numbers of four bytes draw nothing that could be seen. */
 const FAR = 1e6;
 
+/** How much of the lamp and of the room around is seen in a surface. */
+interface Shine {
+  roughness: number;
+  clearcoat: number;
+  clearcoatRoughness: number;
+}
+const OWN: Shine = { roughness: 0.5, clearcoat: 0.3, clearcoatRoughness: 0.4 };
+/** Colours are read by the eye: less shine on them. */
+const READ: Shine = { roughness: 0.7, clearcoat: 0.1, clearcoatRoughness: 0.4 };
+/** The surface of an organ has a film of water on it. */
+const WET: Shine = { roughness: 0.45, clearcoat: 1, clearcoatRoughness: 0.12 };
+
+/** What values are coloured by. */
+export interface Colouring {
+  of: FieldInfo["of"];
+  range: Range;
+  map: Float32Array;
+  /** Whether the colours are how a body looks, and not numbers to be read. */
+  isLook: boolean;
+}
+
 export class Body {
   readonly group = new Group();
   readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>;
@@ -62,6 +83,7 @@ export class Body {
   private style: Style = "smooth";
   private dark = false;
   private hasValues = false;
+  private shine = OWN;
   /** Seen itself, whatever skin it wears. */
   private isBare = false;
   /** The surface as it is drawn. */
@@ -90,9 +112,7 @@ export class Body {
     geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
     const material = new MeshPhysicalMaterial({
       color: BODY_COLOURS[index % BODY_COLOURS.length]!,
-      roughness: 0.5,
-      clearcoat: 0.3,
-      clearcoatRoughness: 0.4,
+      ...OWN,
       polygonOffset: true,
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
@@ -172,14 +192,14 @@ export class Body {
   }
 
   /** Colours by values; by its own colour for none. */
-  colourBy(values: Float32Array | undefined, of: FieldInfo["of"], range: Range, map: Float32Array): void {
+  colourBy(values: Float32Array | undefined, { of, range, map, isLook }: Colouring): void {
     const { material } = this.mesh;
-    if (material.vertexColors !== Boolean(values)) {
+    const shine = !values ? OWN : isLook ? WET : READ;
+    if (material.vertexColors !== Boolean(values) || this.shine !== shine) {
+      this.shine = shine;
       material.vertexColors = Boolean(values);
       material.color.set(values ? 0xffffff : BODY_COLOURS[this.index % BODY_COLOURS.length]!);
-      // colours are read by the eye: less shine on them
-      material.clearcoat = values ? 0.1 : 0.3;
-      material.roughness = values ? 0.7 : 0.5;
+      Object.assign(material, shine);
       material.needsUpdate = true;
     }
     this.setOfCells(of === "cells" && values !== undefined);

@@ -1,6 +1,6 @@
 // What colours and arrows of the last picture stand for: the legend tells it.
 
-import type { BodyFrame, Class } from "../protocol";
+import type { BodyFrame, FieldInfo } from "../protocol";
 import { CLASS_RANGE } from "./palette";
 import type { Range } from "./palette";
 
@@ -28,13 +28,17 @@ export class Meanings {
   /** Diagonal of all bodies [m]. */
   size = 1;
   private hasClasses = false;
+  /** It is not of the values seen. */
+  private isFixed = false;
   private unit = "";
 
   /** Another field, or another world: values seen before tell nothing. */
-  begin(classes: Class[] | null, unit: string): void {
-    this.hasClasses = classes !== null;
-    this.unit = unit;
-    this.range = classes ? CLASS_RANGE : { low: Infinity, high: -Infinity };
+  begin(field: FieldInfo | null): void {
+    this.hasClasses = field !== null && field.classes !== null;
+    const fixed = this.hasClasses ? CLASS_RANGE : field?.scale;
+    this.isFixed = Boolean(fixed);
+    this.unit = field?.unit ?? "";
+    this.range = fixed ? { low: fixed.low, high: fixed.high } : { low: Infinity, high: -Infinity };
   }
 
   /** What counts as nothing in a unit. */
@@ -50,7 +54,7 @@ export class Meanings {
     this.hasValues = values.some((list) => list !== undefined && list.length > 0);
     this.classes = this.hasClasses ? numbersIn(values) : [];
     this.linkStates = this.hasValues ? [] : numbersIn(bodies.map(({ linkStates }) => linkStates)).filter((state) => state > 1);
-    if (!this.hasClasses) this.fit(values, shrinking);
+    if (!this.isFixed) this.fit(values, shrinking);
   }
 
   private fit(values: Values, shrinking: number): void {

@@ -1,7 +1,7 @@
 // Colours of bodies, and maps from values to colours.
 
 import { Color } from "three";
-import type { Class, ColourMap } from "../protocol";
+import type { Class, ColourMap, Scale } from "../protocol";
 
 /** Bodies in colours of their own, where no field colours them: the same as in pictures. */
 export const BODY_COLOURS = [0xd67a68, 0x7096c4, 0xa0b260, 0xcea860, 0xa080b8];
@@ -12,7 +12,7 @@ export const AXIS_COLOURS = [0xd23c3c, 0x2f9e4f, 0x3d6fd8];
 export const OBSTACLE_COLOUR = 0x969eaa;
 
 /** A map as 256 colours of three numbers in linear light. */
-export function linearColours(map: ColourMap): Float32Array {
+export function linearColours(map: ColourMap | Scale): Float32Array {
   const colours = new Float32Array(3 * 256);
   const colour = new Color();
   for (let i = 0; i < 256; i++) {

@@ -102,6 +102,8 @@ export class Picture {
   private bounds = new Box3();
   private colours: Float32Array = new Float32Array(3 * 256);
   private field = -1;
+  /** Whether its colours are how bodies look. */
+  private isLook = false;
   private of: FieldInfo["of"] = "points";
   private style: Style = "smooth";
   private dark = false;
@@ -183,7 +185,7 @@ export class Picture {
     this.last = null;
     // a range that another world, or this one before, has widened tells nothing of this one
     this.field = -1;
-    this.meanings.begin(null, "");
+    this.meanings.begin(null);
     if (this.obstacles) {
       this.scene.remove(this.obstacles.group);
       this.obstacles.dispose();
@@ -297,18 +299,20 @@ export class Picture {
       skin.mesh.visible = !isBare;
       if (worn_by !== null) this.bodies[worn_by]?.setBare(isBare);
     }
-    bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, meanings.range, this.colours));
+    const colouring = { of: this.of, range: meanings.range, map: this.colours, isLook: this.isLook };
+    bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], colouring));
   }
 
-  /** Colours by a field with this number; `map` is for quantities, classes have colours of their own. */
+  /** Colours by a field with this number; `map` is for quantities, classes and looks have colours of their own. */
   setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
-    const classes = field?.classes ?? null;
-    if (number !== this.field) this.meanings.begin(classes, field?.unit ?? "");
+    const { classes = null, scale = null } = field ?? {};
+    if (number !== this.field) this.meanings.begin(field ?? null);
     this.field = number;
+    this.isLook = scale !== null;
     this.light();
     this.isStale = true;
     this.of = field?.of ?? "points";
-    this.colours = classes ? coloursOf(classes) : linearColours(map);
+    this.colours = classes ? coloursOf(classes) : linearColours(scale ?? map);
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -475,7 +479,7 @@ export class Picture {
 
   /** Balances the lights for what is drawn. */
   private light(): void {
-    const isRead = this.field >= 0;
+    const isRead = this.field >= 0 && !this.isLook;
     this.sky.intensity = SKY + (this.quality.now.reflections ? 0 : SKY_ALONE) + (isRead ? SKY_EVEN : 0);
     this.sky.groundColor.set(isRead ? GROUND_EVEN : GROUND);
     this.key.intensity = isRead ? KEY_EVEN : KEY;
