@@ -3,6 +3,7 @@
 
 mod adapting;
 mod crowds;
+mod cut_open;
 mod hands;
 mod kneaded;
 mod levels_resume;

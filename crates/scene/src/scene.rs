@@ -78,6 +78,8 @@ pub struct BodyInfo {
     pub mesh: Arc<Mesh>,
     /// The boundary of the mesh.
     pub surface: TriangleSurface,
+    /// When each cell of the mesh is cut [s], never where that is infinite; empty of a body that nothing cuts.
+    pub cut_at: Vec<f64>,
     /// Name of its elastic force.
     pub force: String,
     pub laws: LawsInfo,
@@ -391,6 +393,11 @@ impl BodyInfo {
         self.own.as_ref().map_or(0, |own| self.rows.len() - own.points().len())
     }
 
+    /// Whether a cell of the mesh carries something at a time of the world [s].
+    pub fn is_whole(&self, cell: usize, time: f64) -> bool {
+        self.cut_at.get(cell).is_none_or(|cut| *cut > time)
+    }
+
     /// How many meshes it has, where it has levels.
     pub fn level_count(&self, world: &World) -> Option<usize> {
         Some(census(world, self.system, &self.force)?.active.len())
@@ -429,6 +436,7 @@ impl BodyInfo {
             own,
             mesh,
             surface,
+            cut_at: Vec::new(),
             force,
             laws,
             frames,

@@ -117,6 +117,24 @@ impl Show {
     }
 }
 
+impl BodyMoment {
+    /// All its points, and of its cells those that are kept.
+    fn of_cells(self, is_kept: impl Fn(usize) -> bool) -> Self {
+        let mut mesh = Mesh { points: self.mesh.points.clone(), ..Mesh::default() };
+        let kept: Vec<usize> = (0..self.mesh.cell_count()).filter(|cell| is_kept(*cell)).collect();
+        for (_, cell) in self.mesh.cells().enumerate().filter(|(cell, _)| is_kept(*cell)) {
+            mesh.push_cell(cell.kind, cell.nodes);
+        }
+        let left = |field: Field| {
+            let of_cell = |cell: &usize| &field.values[cell * field.components..][..field.components];
+            let values = kept.iter().flat_map(of_cell).copied().collect();
+            Field { values, ..field }
+        };
+        let cell_fields = self.cell_fields.into_iter().map(left).collect();
+        Self { mesh: Arc::new(mesh), cell_fields, ..self }
+    }
+}
+
 /// Size of a body that can be drawn, and of a solid that has not blown up, in sizes of its mesh.
 pub(crate) const MOST_GROWTH: f64 = 100.0;
 
@@ -150,14 +168,17 @@ impl Moment {
         let world = &session.world;
         let body = |info: &BodyInfo| {
             let (point_fields, cell_fields) = crate::frames::fields(world, info);
-            BodyMoment {
+            let whole = BodyMoment {
                 name: info.name.clone(),
                 mesh: Arc::clone(&info.mesh),
                 positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
                 point_fields,
                 cell_fields,
                 frames: frames_of(world, info),
-            }
+            };
+            // a cut opens the surface that is drawn: it is that of the cells which are left
+            let is_whole = |cell: usize| info.is_whole(cell, world.time());
+            if (0..info.cut_at.len()).all(is_whole) { whole } else { whole.of_cells(is_whole) }
         };
         let skin = |info: &SkinInfo| {
             let (mesh, normals) = crate::frames::mesh_of_skin(info, world);

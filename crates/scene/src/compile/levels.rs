@@ -167,6 +167,19 @@ fn cuts(draft: &Draft, body: &Placed, spec: &LevelsSpec) -> Vec<Cut> {
     spec.cuts.iter().filter_map(cut).collect()
 }
 
+/// When each cell of a body is cut [s], infinite where that is never; empty where nothing is cut.
+pub fn cut_at(draft: &Draft, body: &Placed) -> Vec<f64> {
+    let cuts = body.spec.levels.as_ref().map_or_else(Vec::new, |spec| cuts(draft, body, spec));
+    if cuts.is_empty() {
+        return Vec::new();
+    }
+    let mut at = vec![f64::INFINITY; body.mesh.cell_count()];
+    for cut in &cuts {
+        cut.cells.iter().for_each(|cell| at[*cell as usize] = cut.time.min(at[*cell as usize]));
+    }
+    at
+}
+
 /// Whether a formula of levels gives one that there is at every point at rest.
 pub(super) fn check_fixed(
     draft: &Draft,

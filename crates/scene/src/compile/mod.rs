@@ -187,13 +187,14 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     let networks = network::networks(&draft);
+    let cuts: Vec<Vec<f64>> = draft.bodies.iter().map(|body| levels::cut_at(&draft, body)).collect();
     let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, marks, .. } = draft;
     model.systems = systems;
-    let bodies = bodies.into_iter().zip(contours).map(|(body, contours)| {
+    let bodies = bodies.into_iter().zip(contours).zip(cuts).map(|((body, contours), cut_at)| {
         let radii = network::radii(&body, spec);
         let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
         let marks = marks.iter().find(|marks| marks.body == body.spec.name).cloned();
-        BodyInfo { dress, marks, ..BodyInfo::new(body, radii, contours) }
+        BodyInfo { dress, marks, cut_at, ..BodyInfo::new(body, radii, contours) }
     });
     Some(Scene {
         title: title(spec, sources),
