@@ -459,7 +459,7 @@ fn told_angles_open() {
     let q = &world.state().systems[0].q;
     let (u, w) = (q[0] - q[1], q[2] - q[1]);
     let off = u.cross(w).z.atan2(u.dot(w)) - (0.5 * std::f64::consts::PI + 8.0);
-    // nearly a turn and a half
+    // it is told a turn and a half
     assert!((off + 2.0 * std::f64::consts::TAU).abs() < 1e-10, "{off}");
 }
 

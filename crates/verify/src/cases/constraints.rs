@@ -233,7 +233,7 @@ pub(super) const CASES: &[Case] = &[
         reference: -1.5,
         // 0.5 s³ + 20 s² + 200 s + 1000 = 0 has its slowest roots at −5.9: e^−17.6 of m g/c = 25 mm is left, not more than ten times
         tolerance: Tolerance::Absolute(6e-9),
-        mutation: "networks.sagging.constraints[1].augmented.rate=900",
+        mutation: "networks.sagging.constraints[1].augmented.rate=0",
         ..TURNS
     },
     Case {
@@ -293,9 +293,9 @@ pub(super) const CASES: &[Case] = &[
         what: "displacement of a mass of a skin around a rigid core that is at rest, after 0.1 s: A e^{−γt} sin ωt",
         // A = v/ω, γ = z/2m = 2/s, ω = √(k/m − γ²) = √396/s
         reference: 1.503_231_004_251_977_6e-5,
-        // dampers compare with the step before: a mass less by z h/2 m of it, ζ/2 = 2e-4, by which ω t = 2 is more by ζ/4 and γ t = 0.2 by ζ/2 and once more
-        // for the step half before the place; and springs 0.3 m long turn by A √3/0.3 m/2 = 6e-5, of which the force is wrong
-        tolerance: Tolerance::Relative(3e-4),
+        // dampers compare with the step before, as if masses were less by ζ/2 = z h/2 m = 2e-4 of them: A is less by ζ/4, ω t = 2 more by ζ/4 of it, which is
+        // seen times cot 2, and γ t = 0.2 by ζ/2, and the first step is short by ζ/2: 1.07 ζ in all. Springs of 0.3 m turn by A √3/0.3 m/2 = 6e-5
+        tolerance: Tolerance::Relative(5e-4),
         ..CORE
     },
     Case {
@@ -356,18 +356,6 @@ pub(super) const CASES: &[Case] = &[
         // 1e-12 of half a metre at both ends
         tolerance: Tolerance::Absolute(1e-12),
         mutation: "networks.held.constraints[0].yields_at=19.8",
-        ..MOULDED
-    },
-    Case {
-        id: "legs_are_crushed",
-        what: "what the legs of a table that lands are crushed by: v²/(2 (4 Y/m − g))",
-        settings: &["systems.main.steps_per_period=10"],
-        reading: Reading::component("top", 1),
-        // v²/2 over (4 · 30 N/4 kg − g): the feet, of a gram each, stop at once
-        reference: -0.099_058_940_069_341_26,
-        // impacts are met at a step: a velocity off by 30 m/s² h/2 = 1.5 mm/s, which 2 v/2 (30 m/s² − g) makes a way of 0.15 mm
-        tolerance: Tolerance::Absolute(1.6e-4),
-        mutation: "networks.table.constraints[1].yields_at=30.2",
         ..MOULDED
     },
 ];
