@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use souple_engine::{Census, FieldState, InHand, Levels, Model, State, UnknownKind, World};
+use souple_formal::Formula;
 use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
@@ -29,6 +30,7 @@ use crate::measure::{ContourInfo, ProbeInfo, Workload};
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
 use crate::spec::body::Body;
+use crate::spec::control::{Drives, VARIABLES};
 use crate::spec::expect::Expect;
 use crate::spec::picture::PictureView;
 use crate::spec::sound::Sound;
@@ -497,6 +499,49 @@ pub fn read_file_with_carriers(
     read(Library::default(), overrides, |includer| includer.read_file(path, None), change)
 }
 
+/// A control whose commands are planned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedControl {
+    /// `BODY.CONTROL`
+    pub name: String,
+    /// Where its command stands among the driven parameters of State.
+    pub driven: usize,
+    /// Magnitude that its actuator gives at most [N].
+    pub largest: f64,
+}
+
+/// The same without the files of planned commands, which there need not be yet, and the controls that would read them: they command nothing.
+///
+/// # Errors
+/// Everything else that is wrong with it.
+pub fn read_file_to_plan(
+    path: &Path,
+    overrides: &[String],
+) -> Result<(Scene, Vec<PlannedControl>), Diagnostics> {
+    let mut planned: Vec<PlannedControl> = Vec::new();
+    let change = |spec: &mut Spec| {
+        for body in &mut spec.bodies {
+            let Some(network) = &mut body.network else { continue };
+            for index in 0..network.controls.len() {
+                let control = &network.controls[index];
+                if !matches!(control.drives, Some(Drives::Plan { .. })) {
+                    continue;
+                }
+                let (name, largest) =
+                    (format!("{}.{}", body.name, control.name), network.largest(control.of.name()));
+                planned.push(PlannedControl { name, driven: 0, largest });
+                network.controls[index].drives = Formula::compile("0", &VARIABLES).ok().map(Drives::Command);
+            }
+        }
+    };
+    let scene = read(Library::default(), overrides, |includer| includer.read_file(path, None), change)?;
+    for control in &mut planned {
+        let found = scene.model.controls.iter().find(|other| other.name() == control.name);
+        control.driven = found.map_or(0, |found| found.driven());
+    }
+    Ok((scene, planned))
+}
+
 /// The same from a text; files it names are relative to `folder`, and messages call it `name`.
 ///
 /// # Errors
@@ -504,6 +549,23 @@ pub fn read_file_with_carriers(
 pub fn read_text(name: &str, text: &str, folder: &Path, overrides: &[String]) -> Result<Scene, Diagnostics> {
     let source = Source { name: name.to_owned(), folder: PathBuf::from(folder), text: text.to_owned() };
     read(Library::default(), overrides, |includer| Some(includer.read_text(source)), |_| ())
+}
+
+/// The same of a text whose tables of numbers, such as plans, are at hand too: names of files, as the text has them, with their texts.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn read_text_with_files(
+    name: &str,
+    text: &str,
+    files: &[(&str, &str)],
+    overrides: &[String],
+) -> Result<Scene, Diagnostics> {
+    let folder = PathBuf::from(".");
+    let texts = files.iter().map(|(file, text)| (folder.join(file), (*text).to_owned())).collect();
+    let library = Library { texts, ..Library::default() };
+    let source = Source { name: name.to_owned(), folder, text: text.to_owned() };
+    read(library, overrides, |includer| Some(includer.read_text(source)), |_| ())
 }
 
 /// Reads a scene again from what it was read from before, wherever that is now: texts are taken from `inputs`, other

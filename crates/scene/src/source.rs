@@ -100,6 +100,23 @@ impl Sources {
         Ok(place)
     }
 
+    /// The text of a file that the text of `source` names, from the library where it has it, and keeps its fingerprint.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no text.
+    pub(crate) fn read(&self, source: usize, file: &str) -> std::io::Result<String> {
+        let path = self.texts[source].folder.join(file);
+        let text = match self.text_in_library(&path) {
+            Some(text) => text,
+            None => std::fs::read_to_string(self.library.place_of(&path))?,
+        };
+        let mut files = self.files.borrow_mut();
+        if !files.iter().any(|known| known.path == path) {
+            files.push(InputFile { sha256: sha256(text.as_bytes()), path });
+        }
+        Ok(text)
+    }
+
     pub(crate) fn fingerprint(&self) -> String {
         fingerprint(self.iter().map(|source| source.text.as_str()), &self.files.borrow())
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use souple_engine::World;
-use souple_scene::{Scene, read_text};
+use souple_scene::{Scene, read_text, read_text_with_files};
 
 const HEAD: &str = "format = 1\n[world]\nperiod = \"1 ms\"\n[systems.main]\nstepper = \"t_simulation\"\n";
 
@@ -154,7 +154,7 @@ fn wrong_controls_are_refused() {
         &with("links = \"band\"\nparameter = \"mass\"\nvalue = \"1\""),
         &["no `mass` that can be driven", "one of stiffness"],
     );
-    refused(&with("connects = \"t < 1\""), &["does not say what it drives", "links, or crowds"]);
+    refused(&with("connects = \"t < 1\""), &["does not say what it drives", "links, crowds or actuator"]);
     refused(&with("crowds = \"band\"\nconnects = \"t < 1\""), &["no crowds `band`"]);
     let bent = pulled(
         "{ name = \"cohesion\", distance = 1, peak = 1.2, range = 1.5, cohesion = 4 }",
@@ -240,4 +240,97 @@ fn numbers_that_make_no_law_are_told() {
     (0..20).for_each(|_| world.step().unwrap());
     // from 2 cm beyond on
     assert!(world.state().systems[0].v[1].x > 0.0);
+}
+
+/// A cart whose motor is commanded moves by `x' = x + h v + h² u/2m` exactly, with the command cut off at the largest; what the control made,
+/// less what is stored, is the work `Σ u Δx`, which is the kinetic energy.
+#[test]
+fn actuators_are_commanded() {
+    let text = "[networks.n.masses.cart]\npositions = [[0.5, 0, 0], [1.5, 0, 0]]\nmass = 1\n\
+        [networks.n.actuators.motor]\nof = \"cart\"\ndirection = [2, 0, 0]\nlargest = \"30 N\"\n\
+        [networks.n.controls.drive]\nactuator = \"motor\"\nvalue = \"-50 * x - 20 * v\"\n\
+        inputs.x = { of = \"cart\", quantity = \"position\", component = \"x\" }\n\
+        inputs.v = { of = \"cart\", quantity = \"velocity\", component = \"x\" }\n";
+    let text =
+        format!("format = 1\n[world]\nperiod = \"1 ms\"\n[systems.main]\nstepper = \"verlet\"\n{text}");
+    let scene = read_text("net.toml", &text, Path::new("."), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+    let mut world = scene.model.start(scene.state);
+    let (mut x, mut v, mut work, h, mass) = (1.0_f64, 0.0_f64, 0.0_f64, 1e-3, 2.0);
+    for _ in 0..500 {
+        world.step().unwrap();
+        let u = (-50.0 * x - 20.0 * v).clamp(-30.0, 30.0);
+        let dx = h * v + 0.5 * h * h * u / mass;
+        (x, v, work) = (x + dx, v + h * u / mass, work + u * dx);
+    }
+    let state = &world.state().systems[0];
+    // sums of 500 roundings
+    assert!(
+        (state.q[0].x + 0.5 - x).abs() < 1e-13 && (state.v[1].x - v).abs() < 1e-13,
+        "{state:?}, not {x}, {v}"
+    );
+    let energy = world.energy();
+    let stored: f64 = energy.by_force.iter().map(|(_, energy)| energy.stored).sum();
+    assert_eq!(energy.made_by_control[0].0, "n.drive");
+    let done = energy.made_by_control[0].1 - stored;
+    assert!((done - work).abs() < 1e-11 && (energy.kinetic - work).abs() < 1e-11, "{done} J, not {work} J");
+}
+
+/// What an actuator lacks is said where it is.
+#[test]
+fn wrong_actuators_are_refused() {
+    let with = |actuator: &str, controls: &str| {
+        let actuator = format!("[networks.n.actuators.motor]\n{actuator}\n");
+        pulled(SPRING, &format!("{actuator}{controls}"))
+    };
+    let drive = "[networks.n.controls.c]\nactuator = \"motor\"\nvalue = \"1\"\n";
+    let again = "[networks.n.controls.d]\nactuator = \"motor\"\nvalue = \"1\"\n";
+    let good = "of = \"bob\"\ndirection = [1, 0, 0]";
+    assert!(scene(&with(good, drive)).is_ok());
+    refused(&with(good, ""), &["actuator `motor` is not commanded by one control"]);
+    refused(&with(good, &format!("{drive}{again}")), &["actuator `motor` is not commanded by one control"]);
+    refused(&with("of = \"bib\"\ndirection = [1, 0, 0]", drive), &["no group of masses `bib`", "bob"]);
+    refused(&with("of = \"bob\"\ndirection = [0, 0, 0]", drive), &["a direction of no length"]);
+    let of = |control: &str| with(good, &format!("{drive}[networks.n.controls.e]\n{control}\n"));
+    refused(&of("actuator = \"engine\"\nvalue = \"1\""), &["no actuators `engine`", "motor"]);
+    refused(
+        &of("actuator = \"motor\"\nconnects = \"t < 1\""),
+        &["commands an actuator", "value or plan, alone"],
+    );
+    refused(&of("actuator = \"motor\"\nlinks = \"band\"\nvalue = \"1\""), &["drives several things"]);
+}
+
+/// Commands of a plan act period by period, cut off at the largest, and the last goes on; what is wrong with a plan is said with its line.
+#[test]
+fn plans_are_read() {
+    let text = "format = 1\n[world]\nperiod = \"10 ms\"\n[systems.main]\nstepper = \"verlet\"\n\
+        [networks.n.masses.cart]\npositions = [[0, 0, 0]]\nmass = 2\n\
+        [networks.n.actuators.motor]\nof = \"cart\"\ndirection = [1, 0, 0]\nlargest = 6\n\
+        [networks.n.controls.drive]\nactuator = \"motor\"\nplan = \"a.csv\"\n";
+    let read = |plan: &str| read_text_with_files("net.toml", text, &[("a.csv", plan)], &[]);
+    let head = "time [s],n.else [N],n.drive [N]\n";
+    let scene =
+        read(&format!("{head}0,5,4\n\n0.01,5,-8\n0.02,5,2\n")).unwrap_or_else(|faults| panic!("{faults}"));
+    let mut world = scene.model.start(scene.state);
+    let mut speed = 0.0;
+    for command in [4.0, -6.0, 2.0, 2.0] {
+        world.step().unwrap();
+        speed += 0.01 * command / 2.0;
+        assert!((world.state().systems[0].v[0].x - speed).abs() < 1e-15, "{command} N");
+    }
+    for (plan, words) in [
+        ("", "no column is of `n.drive`"),
+        ("time [s],n.driven [N]\n0,1\n", "no column is of `n.drive`"),
+        (head, "it has no rows"),
+        (&format!("{head}0,5\n"), "line 2 is `0,5`"),
+        (&format!("{head}0,5,4\n0.01,5,NaN\n"), "line 3 is `0.01,5,NaN`"),
+        (&format!("{head}0,5,4\n0.02,5,4\n"), "line 3 is of 0.02 s"),
+    ] {
+        let message = read(plan).err().expect("a refusal").to_string();
+        assert!(message.contains(words) && message.contains("a.csv"), "`{words}` is not in:\n{message}");
+    }
+    let message = read_text_with_files("net.toml", text, &[], &[]).err().expect("a refusal").to_string();
+    assert!(
+        message.contains("a.csv") && message.contains("a plan, as `souple sweep` writes it"),
+        "{message}"
+    );
 }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use souple_engine::Interruption;
 use souple_run::{Control, Options, Status, Trace};
+use souple_scene::ProbeInfo;
 use toml::{Table, Value};
 
 use crate::SweepError;
@@ -154,7 +155,7 @@ impl Fit {
 
 impl Wanted {
     /// `PROBE`, `PROBE.x`: the probe and its component.
-    fn read(key: &'static str, text: &str) -> Self {
+    pub(crate) fn read(key: &'static str, text: &str) -> Self {
         for (component, suffix) in [".x", ".y", ".z"].into_iter().enumerate() {
             if let Some(name) = text.strip_suffix(suffix) {
                 return Self { key, name: name.to_owned(), component: Some(component) };
@@ -163,26 +164,41 @@ impl Wanted {
         Self { key, name: text.to_owned(), component: None }
     }
 
+    /// The probe, and which of its numbers.
+    pub(crate) fn among(&self, probes: &[ProbeInfo]) -> Result<(ProbeInfo, usize), SweepError> {
+        let Some(probe) = probes.iter().find(|probe| probe.name == self.name) else {
+            let known: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
+            return Err(SweepError::value(self.key, &self.name, format!("a probe: {}", known.join(", "))));
+        };
+        let number = self.number(if probe.gives_vector() { 3 } else { 1 })?;
+        Ok((probe.clone(), number))
+    }
+
     /// Times and values of the probe.
     fn of(&self, traces: &[Trace]) -> Result<(Vec<f64>, Vec<f64>), SweepError> {
         let Some(trace) = traces.iter().find(|trace| trace.name == self.name) else {
             let known: Vec<&str> = traces.iter().map(|trace| trace.name.as_str()).collect();
             return Err(SweepError::value(self.key, &self.name, format!("a probe: {}", known.join(", "))));
         };
-        let component = match (self.component, trace.components) {
-            (None, 1) => 0,
-            (Some(component), components) if components > 1 && component < components => component,
+        let component = self.number(trace.components)?;
+        let values = trace.values.iter().skip(component).step_by(trace.components).copied().collect();
+        Ok((trace.times.clone(), values))
+    }
+
+    /// Which of the numbers of a value that has so many is meant.
+    fn number(&self, components: usize) -> Result<usize, SweepError> {
+        match (self.component, components) {
+            (None, 1) => Ok(0),
+            (Some(component), components) if components > 1 && component < components => Ok(component),
             (Some(component), _) => {
                 let found = format!("{}.{}", self.name, ["x", "y", "z"][component]);
-                return Err(SweepError::value(self.key, found, format!("{}, a scalar", self.name)));
+                Err(SweepError::value(self.key, found, format!("{}, a scalar", self.name)))
             }
             (None, _) => {
                 let expected = format!("a component of it: {0}.x, {0}.y or {0}.z", self.name);
-                return Err(SweepError::value(self.key, format!("{}, a vector", self.name), expected));
+                Err(SweepError::value(self.key, format!("{}, a vector", self.name), expected))
             }
-        };
-        let values = trace.values.iter().skip(component).step_by(trace.components).copied().collect();
-        Ok((trace.times.clone(), values))
+        }
     }
 }
 
@@ -255,7 +271,7 @@ impl Unknown {
     }
 }
 
-fn as_number(value: &Value) -> Option<f64> {
+pub(crate) fn as_number(value: &Value) -> Option<f64> {
     match value {
         Value::Integer(number) => Some(*number as f64),
         Value::Float(number) => Some(*number),
@@ -263,7 +279,7 @@ fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
-fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), SweepError> {
+pub(crate) fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), SweepError> {
     match table.keys().find(|key| !known.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => Err(SweepError::value(

@@ -185,7 +185,7 @@ fn moved(places: &[f64], step: &[f64]) -> Vec<f64> {
     places.iter().zip(step).map(|(place, step)| (place + step).clamp(0.0, 1.0)).collect()
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -250,12 +250,12 @@ pub(crate) fn certainty(found: &Solution) -> Certainty {
     certainty
 }
 
-fn length(column: &[f64]) -> f64 {
+pub(crate) fn length(column: &[f64]) -> f64 {
     dot(column, column).sqrt()
 }
 
 /// What of a column is at right angles to all of an orthonormal basis.
-fn beside(column: &[f64], basis: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn beside(column: &[f64], basis: &[Vec<f64>]) -> Vec<f64> {
     let mut left = column.to_vec();
     for direction in basis {
         let along = dot(&left, direction);
@@ -265,7 +265,7 @@ fn beside(column: &[f64], basis: &[Vec<f64>]) -> Vec<f64> {
 }
 
 /// Gaussian elimination with pivots; `None` where the matrix is singular.
-fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+pub(crate) fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let count = right.len();
     for k in 0..count {
         let pivot = (k..count).max_by(|a, b| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs()))?;

@@ -2,12 +2,14 @@
 //!
 //! A study is a TOML file (see [`Study`]). [`sweep`] makes the runs that the file does not hold yet, so that one that was
 //! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone. Where a study has a `fit`, values are looked
-//! for instead for which a probe follows a measured curve ([`Search`]).
+//! for instead for which a probe follows a measured curve ([`Search`]); where it has a `plan`, commands with which the scene comes to key
+//! states ([`Planner`]).
 
 mod database;
 mod fit;
 pub mod graphs;
 mod least_squares;
+mod motion;
 mod study;
 mod sweep;
 mod table;
@@ -17,6 +19,7 @@ use std::path::PathBuf;
 pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
+pub use motion::{FoundMotion, KeyState, Motion, Planner};
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};
@@ -34,6 +37,10 @@ pub enum SweepError {
     Scene { run: usize, settings: String, message: String },
     #[error("with {settings}: {message}")]
     Failed { settings: String, message: String },
+    #[error(
+        "the plan asks for {wanted} N of `{name}`, whose actuator gives {largest} N at most; expected later keys, or a stronger actuator"
+    )]
+    Beyond { name: String, wanted: f64, largest: f64 },
     #[error("{}: {source}", .path.display())]
     Database { path: PathBuf, source: rusqlite::Error },
     #[error("{}: it holds results of `{found}`, not of `{wanted}`; expected a file of this study, or a new one", .path.display())]

@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 use crate::SweepError;
 use crate::fit::Fit;
+use crate::motion::Motion;
 
 /// A study, read from a TOML file.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ pub struct Study {
     pub graphs: Vec<Graph>,
     /// What is looked for, in the place of runs.
     pub fit: Option<Fit>,
+    /// What motion is sought, in the place of runs.
+    pub motion: Option<Motion>,
 }
 
 /// One run: what it has of its own.
@@ -48,7 +51,7 @@ pub struct Graph {
 /// Most runs of a study.
 const MOST_RUNS: usize = 100_000;
 
-const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs", "fit"];
+const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs", "fit", "plan"];
 const GRAPH_KEYS: &[&str] = &["title", "x", "y", "lines", "logarithmic"];
 
 impl Study {
@@ -81,6 +84,12 @@ impl Study {
         {
             return Err(SweepError::value(other, "there beside `fit`", "a study of runs, or one of a fit"));
         }
+        let motion = document.get("plan").map(Motion::read).transpose()?;
+        let others = ["vary", "table", "graphs", "fit", "steps"];
+        if let (Some(_), Some(other)) = (&motion, others.into_iter().find(|key| document.contains_key(*key)))
+        {
+            return Err(SweepError::value(other, "there beside `plan`", "a study of a plan alone"));
+        }
         let mut table = Some(table);
         let mut table = |path: &Path| match table.take() {
             Some(table) => table(path),
@@ -88,7 +97,7 @@ impl Study {
         };
         let fit = fit.map(|fit| Fit::read(fit, folder, &mut table)).transpose()?;
         let runs = match (document.get("vary"), document.get("table")) {
-            (None, None) if fit.is_some() => Vec::new(),
+            (None, None) if fit.is_some() || motion.is_some() => Vec::new(),
             (Some(vary), None) => products(vary)?,
             (None, Some(_)) => {
                 let path = folder.join(text_of(&document, "table")?.unwrap_or_default());
@@ -100,7 +109,7 @@ impl Study {
             (None, None) => {
                 return Err(missing(
                     "vary",
-                    "a table of paths with lists of values, a `table` file, or a `fit`",
+                    "a table of paths with lists of values, a `table` file, a `fit`, or a `plan`",
                 ));
             }
         };
@@ -128,6 +137,7 @@ impl Study {
             runs,
             graphs: graphs(&document)?,
             fit,
+            motion,
         })
     }
 

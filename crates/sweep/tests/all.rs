@@ -2,5 +2,6 @@
 //! that the crate stands on.
 
 mod fit;
+mod motion;
 mod mutations;
 mod study;

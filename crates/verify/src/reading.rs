@@ -1,7 +1,5 @@
 //! What is read: of a scene a probe of a run, a natural frequency, the highest frequency; or a count of a derivation.
 
-use std::path::Path;
-
 use souple_models::materials::Lame;
 use souple_models::solids::{OperatorQuality, operator_quality};
 use souple_run::{Control, Options, Report, Status, Trace};
@@ -170,7 +168,7 @@ impl Reading {
             return Ok((derivation::count(*count, settings)?, ""));
         }
         let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
-        let scene = souple_scene::read_text(name, text, Path::new("."), settings)
+        let scene = souple_scene::read_text_with_files(name, text, &scenes::files(name), settings)
             .map_err(|diagnostics| diagnostics.to_string())?;
         match self {
             Self::Probe(observation) => observation.read(name, scene),

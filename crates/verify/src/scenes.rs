@@ -26,6 +26,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("cohesive_heap", include_str!("../../../scenes/cohesive_heap/scene.toml")),
     ("collateral", include_str!("../../../scenes/collateral/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
+    ("commanded_carts", include_str!("../../../scenes/commanded_carts/scene.toml")),
+    ("crane", include_str!("../../../scenes/crane/scene.toml")),
     ("crooked_patch", include_str!("../../../scenes/crooked_patch/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
     ("deformable_primitive", include_str!("../../../scenes/deformable_primitive/scene.toml")),
@@ -104,6 +106,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("octree_rods", include_str!("../../../scenes/octree_rods/scene.toml")),
     ("particles_cube", include_str!("../../../scenes/particles_cube/scene.toml")),
     ("patch", include_str!("../../../scenes/patch/scene.toml")),
+    ("planned_cart", include_str!("../../../scenes/planned_cart/scene.toml")),
     ("plastic_bar", include_str!("../../../scenes/plastic_bar/scene.toml")),
     ("plastic_kernel", include_str!("../../../scenes/plastic_kernel/scene.toml")),
     ("plastic_square", include_str!("../../../scenes/plastic_square/scene.toml")),
@@ -178,6 +181,17 @@ pub const SCENES: &[(&str, &str)] = &[
     ("wax", include_str!("../../../scenes/wax/scene.toml")),
     ("weight_on_string", include_str!("../../../scenes/weight_on_string/scene.toml")),
 ];
+
+/// `(scene, file, text)` of the plans that scenes name.
+const PLANS: &[(&str, &str, &str)] = &[
+    ("crane", "motion.plan.csv", include_str!("../../../scenes/crane/motion.plan.csv")),
+    ("planned_cart", "motion.plan.csv", include_str!("../../../scenes/planned_cart/motion.plan.csv")),
+];
+
+/// Names and texts of the files that a scene names.
+pub fn files(name: &str) -> Vec<(&'static str, &'static str)> {
+    PLANS.iter().filter(|(scene, ..)| *scene == name).map(|(_, file, text)| (*file, *text)).collect()
+}
 
 /// The text of a scene.
 pub fn text(name: &str) -> Option<&'static str> {

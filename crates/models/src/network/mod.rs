@@ -3,6 +3,7 @@
 //! A mass is a point unknown of the engine. Links of one law are one [`souple_engine::Force`]; what they remember
 //! lives in State. Laws are in [`laws`], one file and one line of its table each.
 
+mod actuator;
 mod cases;
 pub mod constraints;
 pub mod contour;
@@ -31,6 +32,7 @@ mod span;
 mod view;
 pub mod written;
 
+pub use actuator::Actuator;
 pub use constraints::{Augmented, Constraints, Keeping};
 pub use crowd::{Crowd, CrowdDescription, Listing, PAIR_MEMORY};
 pub use driven::{DRIVEN_PARAMETERS, DrivenLaw, Recipe, Wiring};

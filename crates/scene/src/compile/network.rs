@@ -5,6 +5,7 @@ mod constraints;
 mod controls;
 mod ends;
 mod fill;
+mod plan;
 mod steps;
 mod summary;
 mod views;
@@ -220,6 +221,7 @@ pub fn add_forces(
             forces.push(Box::new(crowd));
         }
     }
+    controls::add_actuators(draft, body, network, forces);
     let constraints: Vec<_> = (0..network.constraints.len())
         .filter_map(|index| constraints::of(draft, (body, network), timestep, index))
         .collect();

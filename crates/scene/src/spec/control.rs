@@ -30,10 +30,11 @@ static INPUT: Keys = Keys::new(
 
 pub(super) static CONTROL: Keys = Keys::new(
     "control",
-    "what makes and breaks links or crowds, or turns a parameter of their law, while the world runs: `connects`, or `parameter` and `value`",
+    "what makes and breaks links or crowds, turns a parameter of their law, or commands an actuator while the world runs",
     &[
         Key::new("links", Shape::Text, "the `name` of the tables of links"),
         Key::new("crowds", Shape::Text, "or that of crowds or encounters"),
+        Key::new("actuator", Shape::Text, "or the name of an actuator, which `value` commands [N]"),
         Key::new(
             "connects",
             Shape::Text,
@@ -47,7 +48,16 @@ pub(super) static CONTROL: Keys = Keys::new(
         )
         .or(Value::Number(0.0)),
         Key::new("parameter", Shape::Text, "what is turned"),
-        Key::new("value", Shape::Text, "its value, in its SI unit: a formula of t, previous and the inputs"),
+        Key::new(
+            "value",
+            Shape::Text,
+            "its value, or the command of an actuator, in its SI unit: a formula of t, previous and the inputs",
+        ),
+        Key::new(
+            "plan",
+            Shape::Text,
+            "or a file of the commands of an actuator, as `souple sweep` plans them, relative to the scene file",
+        ),
         Key::new("inputs", Shape::Named(&INPUT), "what it reads, by the names that it uses"),
     ],
 );
@@ -62,11 +72,12 @@ pub struct ControlSpec {
     pub site: Site,
 }
 
-/// Links or crowds, by what controls call them.
+/// Links, crowds or an actuator, by what controls call them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Driven<N> {
     Links(N),
     Crowds(N),
+    Actuator(N),
 }
 
 /// What a control does.
@@ -79,6 +90,13 @@ pub enum Drives {
     Parameter {
         name: String,
         value: Formula,
+    },
+    /// Of an actuator [N].
+    Command(Formula),
+    /// The file of the commands of an actuator, period by period.
+    Plan {
+        file: String,
+        site: Site,
     },
 }
 
@@ -115,7 +133,19 @@ impl ControlSpec {
                 expected,
             );
         };
-        let drives = match reader.written(&["connects", "parameter", "value"])[..] {
+        let is_of_actuator = reader.has("actuator");
+        let drives = match reader.written(&["connects", "parameter", "value", "plan"])[..] {
+            ["value"] if is_of_actuator => Formula::compile(&reader.text("value"), &variables)
+                .map(Drives::Command)
+                .map_err(|error| wrong("value", &error))
+                .ok(),
+            ["plan"] if is_of_actuator => {
+                Some(Drives::Plan { file: reader.text("plan"), site: reader.site_of("plan") })
+            }
+            _ if is_of_actuator => {
+                refuse("actuator", format!("control `{name}` commands an actuator"), "value or plan, alone");
+                None
+            }
             ["connects"] => Condition::compile(&reader.text("connects"), &variables)
                 .map(|holds| Drives::Connection { holds, ramp: reader.number("ramp") })
                 .map_err(|error| wrong("connects", &error))
@@ -134,16 +164,27 @@ impl ControlSpec {
             }
         };
         let inputs = inputs.iter().map(|(name, input)| InputSpec::read(name, input)).collect();
-        let of = match reader.written(&["links", "crowds"])[..] {
+        let written = reader.written(&["links", "crowds", "actuator"]);
+        let of = match written[..] {
+            ["actuator"] => Driven::Actuator(reader.text("actuator")),
             ["crowds"] => Driven::Crowds(reader.text("crowds")),
             ["links"] => Driven::Links(reader.text("links")),
             [] => {
                 let message = format!("control `{name}` does not say what it drives");
-                reader.log().add(Code::MissingKey, &reader.site(), message, "links, or crowds: a name");
+                reader.log().add(
+                    Code::MissingKey,
+                    &reader.site(),
+                    message,
+                    "links, crowds or actuator: a name",
+                );
                 Driven::Links(String::new())
             }
             _ => {
-                refuse("crowds", format!("control `{name}` drives links and crowds"), "one of them");
+                refuse(
+                    written[written.len() - 1],
+                    format!("control `{name}` drives several things"),
+                    "one of links, crowds, actuator",
+                );
                 Driven::Links(String::new())
             }
         };
@@ -154,7 +195,7 @@ impl ControlSpec {
 impl<N: AsRef<str>> Driven<N> {
     pub fn name(&self) -> &str {
         match self {
-            Self::Links(name) | Self::Crowds(name) => name.as_ref(),
+            Self::Links(name) | Self::Crowds(name) | Self::Actuator(name) => name.as_ref(),
         }
     }
 
@@ -163,6 +204,7 @@ impl<N: AsRef<str>> Driven<N> {
         match self {
             Self::Links(_) => "links",
             Self::Crowds(_) => "crowds",
+            Self::Actuator(_) => "actuators",
         }
     }
 

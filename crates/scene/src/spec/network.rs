@@ -1,5 +1,6 @@
 //! Networks of masses and interactions: what stands for a body where matter is points and links.
 
+mod actuator;
 mod constraints;
 mod contours;
 mod fill;
@@ -7,6 +8,7 @@ mod fusible;
 mod kept;
 mod objects;
 
+pub use actuator::ActuatorSpec;
 pub use constraints::{ConstraintKind, ConstraintSpec, Guided};
 pub use contours::{ContourSpec, Way};
 pub use fill::{FillSpec, Filled};
@@ -234,7 +236,12 @@ pub(crate) static NETWORK: Keys = Keys::new(
         PORTS_KEY,
         CONNECTIONS_KEY,
         Key::new("views", Shape::Named(&VIEW), "what links may see in the place of masses"),
-        Key::new("controls", Shape::Named(&CONTROL), "what drives links, crowds and the parameters of their laws"),
+        Key::new("actuators", Shape::Named(&actuator::ACTUATOR), "forces on masses that controls command"),
+        Key::new(
+            "controls",
+            Shape::Named(&CONTROL),
+            "what drives links, crowds, the parameters of their laws, and actuators",
+        ),
         Key::new(
             "space",
             Shape::Choice(&["physical", "algorithmic"]),
@@ -269,6 +276,7 @@ pub struct Network {
     pub constraints: Vec<ConstraintSpec>,
     /// Numbers of the masses of parts and ports.
     pub presented: Vec<(String, std::ops::Range<u32>)>,
+    pub actuators: Vec<ActuatorSpec>,
     pub controls: Vec<ControlSpec>,
     /// What links may see in the place of masses: numbers behind those of masses, see [`Network::seen`].
     pub views: Vec<ViewSpec>,
@@ -390,6 +398,11 @@ impl Network {
             constraints: reader.tables("constraints").iter().map(ConstraintSpec::read).collect(),
             presented,
             views,
+            actuators: reader
+                .named("actuators")
+                .into_iter()
+                .map(|(name, actuator)| ActuatorSpec::read(name, &actuator))
+                .collect(),
             controls: reader
                 .named("controls")
                 .into_iter()
@@ -415,6 +428,10 @@ impl Network {
         for constraint in network.constraints.iter().filter(|_| network.space == Space::Algorithmic) {
             let message = "`constraints` are in SI units, and the network counts time in steps";
             reader.log().add(Code::Conflict, &constraint.site, message, "space = \"physical\"");
+        }
+        for actuator in network.actuators.iter().filter(|_| network.space == Space::Algorithmic) {
+            let message = "`actuators` are in SI units, and the network counts time in steps";
+            reader.log().add(Code::Conflict, &actuator.site, message, "space = \"physical\"");
         }
         network.check_constraints(reader);
         network.check_contours(reader);
@@ -457,6 +474,12 @@ impl Network {
 
     pub fn mass_count(&self) -> u64 {
         self.masses.iter().map(|group| group.places.count()).sum()
+    }
+
+    /// Of an actuator [N].
+    pub fn largest(&self, actuator: &str) -> f64 {
+        let found = self.actuators.iter().find(|other| other.name == actuator);
+        found.map_or(f64::INFINITY, |actuator| actuator.largest)
     }
 
     /// The masses that a point of view sees, one by one; a mean sees them as one.

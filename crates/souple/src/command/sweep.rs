@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Ending, Fit, Progress, Search, Study, SweepError, Unknown, Workers, fingerprints, graphs,
-    sweep as make_runs, table_of,
+    Database, Ending, Fit, Motion, Planner, Progress, Search, Study, SweepError, Unknown, Workers,
+    fingerprints, graphs, sweep as make_runs, table_of,
 };
 use souple_table::counted;
 
@@ -17,8 +17,8 @@ use super::{End, Refusal, interruption, print_json, print_line, print_note};
 pub struct Arguments {
     /// A study: a TOML file with a scene and what varies
     study: PathBuf,
-    /// SQLite file of the results, beside which table and graphs go, or of a fit the CSV file of the curve; beside the study and
-    /// named like it where left out
+    /// SQLite file of the results, beside which table and graphs go, of a fit the CSV file of the curve, or of a plan that of the
+    /// commands; beside the study and named like it where left out
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Runs at once; as many as the machine has cores where left out
@@ -43,12 +43,12 @@ impl From<SweepError> for Refusal {
         match error {
             SweepError::Value { value, expected, .. } => Self::request("study", value, expected, message),
             SweepError::Read { .. } | SweepError::Syntax { .. } => {
-                Self::request("study", "", "a study: TOML with `scene` and `vary`, or `fit`", message)
+                Self::request("study", "", "a study: TOML with `scene` and `vary`, `fit` or `plan`", message)
             }
             SweepError::Scene { settings, .. } => {
                 Self::request("study", settings, "values that the scene takes", message)
             }
-            SweepError::Failed { .. } => Self::work("run", message),
+            SweepError::Failed { .. } | SweepError::Beyond { .. } => Self::work("run", message),
             SweepError::OtherStudy { found, .. } => {
                 Self::request("database", found, "a file of this study", message)
             }
@@ -62,6 +62,9 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
     let study = Study::read(&arguments.study)?;
     if let Some(fit) = &study.fit {
         return identify(arguments, &study, fit);
+    }
+    if let Some(motion) = &study.motion {
+        return plan(arguments, &study, motion);
     }
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("sqlite"));
     let mut database = Database::open(&out, &study.scene.display().to_string())?;
@@ -123,18 +126,12 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
 
 /// Looks for the values of a fit, and writes the curve that they give beside the measured one.
 fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refusal> {
-    for (option, is_given) in [("--again", arguments.again), ("--threads", arguments.threads > 1)] {
-        if is_given {
-            let message =
-                format!("{option} is of runs that vary; a study with a `fit` takes --jobs and --out");
-            return Err(Refusal::request("option", option, "--jobs, --out", message));
-        }
-    }
+    refuse_options(arguments, "fit", &["--jobs", "--out"])?;
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("fit.csv"));
-    keep_inputs(&out, [&arguments.study, &study.scene, &fit.curve_file])?;
+    keep_inputs(&out, &[&arguments.study, &study.scene, &fit.curve_file])?;
     let abscissa = fit.over.as_ref().map_or("time [s]", |over| over.name.as_str());
     let names = [abscissa, MEASURED, &fit.probe.name];
-    keep_others(&out, names)?;
+    keep_others(&out, &names)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
@@ -215,8 +212,83 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
     Ok(End::Failed)
 }
 
+/// Looks for the commands of a plan, and writes them where a scene may read them.
+fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Refusal> {
+    refuse_options(arguments, "plan", &["--out"])?;
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("plan.csv"));
+    keep_inputs(&out, &[&arguments.study, &study.scene])?;
+    let interruption = interruption::heed();
+    let meter = Meter::new("iterations", arguments.quiet);
+    let mut watch = |iterations: usize, cost: f64, miss: f64| {
+        meter.show(iterations as u64, motion.iterations as u64, format!("cost {cost:.4e}, miss {miss:.1e}"));
+    };
+    let found = Planner { study, motion, stop: &interruption }.run(&mut watch)?;
+    drop(meter);
+    let Some(found) = found else { return Ok(End::Interrupted) };
+    let columns = found.columns();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    keep_others(&out, &names)?;
+    souple_io::write_csv(&out, &columns)?;
+    if arguments.json {
+        let keys = motion.keys.iter().zip(&found.reached);
+        let keys = keys.map(|(key, reached)| {
+            json!({"time": key.time, "probe": key.probe.name, "value": key.value, "reached": reached})
+        });
+        print_json(&json!({
+            "title": study.title,
+            "scene": study.scene.display().to_string(),
+            "controls": found.commands.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+            "cost": found.cost,
+            "keys": keys.collect::<Vec<_>>(),
+            "iterations": found.iterations,
+            "steps": found.steps,
+            "converged": found.ending == Ending::Converged,
+            "files": [out.display().to_string()],
+        }));
+    } else if !arguments.quiet {
+        for (key, reached) in motion.keys.iter().zip(&found.reached) {
+            let (probe, value) = (&key.probe.name, key.value);
+            print_line(format_args!("{probe} at {} s: {reached:.9e}, for {value:.9e}", key.time));
+        }
+        print_line(format_args!(
+            "cost {:.9e} N² s, {}, {} stepped",
+            found.cost,
+            counted(found.iterations as u64, "iteration"),
+            counted(found.steps as u64, "period")
+        ));
+        print_line(format_args!("  {}", out.display()));
+    }
+    if found.ending == Ending::Converged {
+        return Ok(End::Done);
+    }
+    print_note(format_args!(
+        "warning: it ended after {}, at commands that keys or the least effort are not reached with",
+        counted(found.iterations as u64, "iteration")
+    ));
+    Ok(End::Failed)
+}
+
+/// Refuses options of runs that vary, but for those that a study of this `kind` takes.
+fn refuse_options(arguments: &Arguments, kind: &str, taken: &[&str]) -> Result<(), Refusal> {
+    let given = [
+        ("--again", arguments.again),
+        ("--threads", arguments.threads > 1),
+        ("--jobs", arguments.jobs.is_some()),
+    ];
+    match given.into_iter().find(|(option, is_given)| *is_given && !taken.contains(option)) {
+        None => Ok(()),
+        Some((option, _)) => {
+            let message = format!(
+                "{option} is of runs that vary; a study with a `{kind}` takes {}",
+                taken.join(" and ")
+            );
+            Err(Refusal::request("option", option, taken.join(", "), message))
+        }
+    }
+}
+
 /// Refuses to write over what a study is read from.
-fn keep_inputs(out: &Path, inputs: [&PathBuf; 3]) -> Result<(), Refusal> {
+fn keep_inputs(out: &Path, inputs: &[&PathBuf]) -> Result<(), Refusal> {
     let Ok(place) = out.canonicalize() else { return Ok(()) };
     match inputs.iter().find(|input| input.canonicalize().is_ok_and(|input| input == place)) {
         None => Ok(()),
@@ -231,8 +303,8 @@ fn keep_inputs(out: &Path, inputs: [&PathBuf; 3]) -> Result<(), Refusal> {
 /// The name of the second column of what a fit writes.
 const MEASURED: &str = "measured";
 
-/// Refuses to write over what no fit of these columns has written, among it the results of other studies.
-fn keep_others(out: &Path, names: [&str; 3]) -> Result<(), Refusal> {
+/// Refuses to write over what no study of these columns has written, among it the results of others.
+fn keep_others(out: &Path, names: &[&str]) -> Result<(), Refusal> {
     use std::io::Read as _;
     let Ok(file) = std::fs::File::open(out) else { return Ok(()) };
     let mut head = Vec::new();
@@ -241,16 +313,16 @@ fn keep_others(out: &Path, names: [&str; 3]) -> Result<(), Refusal> {
         return Ok(());
     }
     let line = head.split(|byte| *byte == b'\n').next().unwrap_or_default();
-    let columns = names.map(souple_io::csv_cell).join(",");
+    let columns = names.iter().map(|name| souple_io::csv_cell(name)).collect::<Vec<_>>().join(",");
     if String::from_utf8_lossy(line).trim_end() == columns {
         return Ok(());
     }
     let found = out.display().to_string();
     let message = format!(
-        "{found} is there, and no curve of this fit, whose columns are {columns}; expected a new file in `--out`, or one that this fit has \
-         written"
+        "{found} is there, and nothing that this study has written, whose columns are {columns}; expected a new file in `--out`, or one that \
+         it has written"
     );
-    Err(Refusal::request("option", found, "a new file, or one that this fit has written", message))
+    Err(Refusal::request("option", found, "a new file, or one that this study has written", message))
 }
 
 /// Columns under each other.

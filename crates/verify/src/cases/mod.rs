@@ -5,6 +5,7 @@ mod bar;
 mod cantilever_orders;
 mod cantilevers;
 mod characteristics;
+mod commands;
 mod conditional;
 mod constraints;
 mod contact;
@@ -124,6 +125,7 @@ pub const TABLES: &[&[Case]] = &[
     switching::CASES,
     heat::CASES,
     constraints::CASES,
+    commands::CASES,
     rigid::CASES,
     material_fields::CASES,
     matter::CASES,

@@ -2,14 +2,16 @@
 
 use std::ops::Range;
 
-use souple_engine::{CONTROL_LEN, CommittedRows, Control};
+use souple_engine::{CONTROL_LEN, CommittedRows, Control, Force};
 use souple_formal::{Condition, Formula};
 use souple_math::Vec3;
-use souple_models::network::{BuildLink, DRIVEN_PARAMETERS, DrivenLaw, LinkKernel, Recipe, Span, Wiring};
+use souple_models::network::{
+    Actuator, BuildLink, DRIVEN_PARAMETERS, DrivenLaw, LinkKernel, Recipe, Span, Wiring,
+};
 
 use super::super::Draft;
 use super::super::bodies::Placed;
-use super::crowd_force;
+use super::{crowd_force, plan};
 use crate::diagnostic::Code;
 use crate::keys::one_of;
 use crate::reader::Chosen;
@@ -84,10 +86,50 @@ fn wiring(draft: &Draft, body: &Placed, network: &Network, of: &Driven<&str>, dr
                     wiring.parameters.push((parameter.clone(), slot));
                 }
             }
-            None => {}
+            Some(Drives::Command(_) | Drives::Plan { .. }) | None => {}
         }
     }
     wiring
+}
+
+/// A force for each actuator of a network that a control commands; what commands none or several is refused.
+pub fn add_actuators(draft: &Draft, body: &Placed, network: &Network, forces: &mut Vec<Box<dyn Force>>) {
+    let first = first_driven(draft.spec, body);
+    for actuator in &network.actuators {
+        let refuse = |code: Code, message: String, expected: &str| {
+            draft.log.add(code, &actuator.site, message, expected);
+        };
+        let is_of = |control: &ControlSpec| control.of.is(&Driven::Actuator(actuator.name.as_str()));
+        let mut commands = (0..network.controls.len()).filter(|index| is_of(&network.controls[*index]));
+        let (Some(index), None) = (commands.next(), commands.next()) else {
+            let message = format!("actuator `{}` is not commanded by one control", actuator.name);
+            refuse(
+                Code::Conflict,
+                message,
+                "a table under `controls` with its name as `actuator`, and no second one",
+            );
+            continue;
+        };
+        let masses = network.numbers_of(&actuator.of).filter(|numbers| !numbers.is_empty());
+        let Some(masses) = masses.filter(|numbers| numbers.end as usize <= body.mesh.points.len()) else {
+            let known: Vec<&str> = network.masses.iter().map(|group| group.name.as_str()).collect();
+            let message = format!("there is no group of masses `{}`", actuator.of);
+            refuse(Code::UnknownName, message, &one_of(&known));
+            continue;
+        };
+        let base = body.rows.start as u32;
+        forces.push(Box::new(Actuator::new(
+            actuator_force(body, &actuator.name),
+            base + masses.start..base + masses.end,
+            actuator.direction,
+            first + index * CONTROL_LEN,
+        )));
+    }
+}
+
+/// The name of the force of an actuator.
+fn actuator_force(body: &Placed, name: &str) -> String {
+    format!("{}.actuators.{name}", body.spec.name)
 }
 
 /// Gives the model its controls, and State the values that they start from.
@@ -117,6 +159,10 @@ fn control(
     driven: usize,
 ) -> Option<(Written, f64)> {
     let laws: Vec<(String, &Option<Chosen<BuildLink>>)> = match &spec.of {
+        Driven::Actuator(name) => (network.actuators.iter())
+            .filter(|actuator| actuator.name == *name)
+            .map(|_| (actuator_force(body, name), &None))
+            .collect(),
         Driven::Links(name) => (body.links.iter().enumerate())
             .map(|(index, links)| (index, &network.links[links.table]))
             .filter(|(_, table)| !name.is_empty() && table.name == *name)
@@ -132,6 +178,7 @@ fn control(
         let named = match &spec.of {
             Driven::Links(_) => network.links.iter().map(|table| table.name.as_str()).collect::<Vec<_>>(),
             Driven::Crowds(_) => network.crowds.iter().map(|crowd| crowd.name.as_str()).collect(),
+            Driven::Actuator(_) => network.actuators.iter().map(|actuator| actuator.name.as_str()).collect(),
         };
         let known: Vec<&str> = named.into_iter().filter(|name| !name.is_empty()).collect();
         // what is not named at all is said where it is read
@@ -156,6 +203,13 @@ fn control(
             // what is no number of the law is said where it is wired
             (Rule::Parameter(value.clone()), recipe.written(name).unwrap_or(0.0))
         }
+        Drives::Command(value) => {
+            (Rule::Command { value: value.clone(), largest: network.largest(spec.of.name()) }, 0.0)
+        }
+        Drives::Plan { file, site } => {
+            let commands = plan::read(draft, site, file, &format!("{}.{}", body.spec.name, spec.name))?;
+            (Rule::Plan { commands, largest: network.largest(spec.of.name()) }, 0.0)
+        }
     };
     let name = format!("{}.{}", body.spec.name, spec.name);
     let forces = laws.into_iter().map(|(force, _)| force).collect();
@@ -179,8 +233,21 @@ struct Written {
 }
 
 enum Rule {
-    Connection { holds: Condition, ramp: f64 },
+    Connection {
+        holds: Condition,
+        ramp: f64,
+    },
     Parameter(Formula),
+    /// Of an actuator, whose magnitude is at most `largest` [N].
+    Command {
+        value: Formula,
+        largest: f64,
+    },
+    /// The same, of each period; that of the last goes on.
+    Plan {
+        commands: Vec<f64>,
+        largest: f64,
+    },
 }
 
 struct Input {
@@ -245,6 +312,12 @@ impl Written {
         }
         match &self.rule {
             Rule::Parameter(value) => value.evaluate(&values),
+            Rule::Plan { commands, largest } => {
+                // without a period at the start
+                let number = if period > 0.0 { (time / period).round() as usize } else { 0 };
+                commands[number.min(commands.len() - 1)].clamp(-largest, *largest)
+            }
+            Rule::Command { value, largest } => value.evaluate(&values).clamp(-largest, *largest),
             Rule::Connection { holds, ramp } => {
                 let to = f64::from(u8::from(holds.holds(&values)));
                 let most = if *ramp > 0.0 { period / ramp } else { 1.0 };

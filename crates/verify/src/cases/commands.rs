@@ -1,0 +1,69 @@
+//! Actuators that controls command.
+
+use super::network::OSCILLATOR;
+use crate::{Case, Reading, Tolerance};
+
+const CARTS: Case = Case {
+    capabilities: &["JIM-97"],
+    scene: "commanded_carts",
+    source: "specification §6.3, PA-44 and PA-45: u of S' = A S + B u; x' = x + h v + h² u/2m under a force that is constant for a period",
+    // sums of 200 periods
+    tolerance: Tolerance::Absolute(1e-12),
+    ..OSCILLATOR
+};
+
+const PLANNED: Case = Case {
+    scene: "planned_cart",
+    source: "specification §6.3, PA-45: the least Σ f² subject to the discretised equations of motion at all times",
+    // a hundred commands, each as exact as a number that is printed to its last bit
+    tolerance: Tolerance::Absolute(1e-12),
+    mutation: "networks.cart.masses.cart.mass=2.001",
+    ..CARTS
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "cart_is_led_by_a_formula",
+        what: "how far a cart came that was told to go a metre by a formula of the time, constant for periods of 10 ms",
+        reading: Reading::last("led"),
+        // h²/m Σ 3 (1 − n h)(N − n − 1/2)
+        reference: 1.014_975,
+        mutation: "networks.led.masses.cart.mass=2.001",
+        ..CARTS
+    },
+    Case {
+        id: "cart_is_regulated",
+        what: "where a cart is after two seconds that is brought back by a formula of place and speed, and by no more than its motor gives",
+        reading: Reading::last("regulated"),
+        // the recursion with u = −50 x − 20 v, at most 30 N, in 50 digits
+        reference: 0.000_611_225_757_320_417_2,
+        mutation: "networks.regulated.actuators.motor.largest=31",
+        ..CARTS
+    },
+    Case {
+        id: "planned_cart_arrives",
+        what: "where a cart is half a second past the end of a plan that brings it to rest with the least effort",
+        reading: Reading::last("place"),
+        reference: 1.0,
+        ..PLANNED
+    },
+    Case {
+        id: "planned_cart_halfway",
+        what: "its speed halfway",
+        reading: Reading::last("speed").after(50),
+        // h/m Σ_{n<N/2} λ ((N − 1)/2 − n) = λ h N²/8m, λ = 12 m d/(h² N (N² − 1)): 3 d N/(2 h (N² − 1))
+        reference: 3.0 * 100.0 / (2.0 * 0.02 * (100.0 * 100.0 - 1.0)),
+        ..PLANNED
+    },
+    Case {
+        id: "crane_arrives",
+        what: "where the trolley of a crane is that was planned to bring a load to rest three metres on",
+        scene: "crane",
+        reading: Reading::component("trolley", 0).after(100),
+        reference: 3.0,
+        // commands change by a millionth at most in the last step, of which keys see the square; printed to the last bit
+        tolerance: Tolerance::Absolute(1e-6),
+        mutation: "networks.crane.masses.load.mass=1.001",
+        ..PLANNED
+    },
+];
