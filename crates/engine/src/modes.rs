@@ -22,6 +22,8 @@ pub enum ModesError {
         "`{force}` relates points by forces that are solved for in steps, which have no stiffness that modes could be found of; a stiff link, or a constraint with `augmented`, has one"
     )]
     Bound { force: String },
+    #[error("what is held leaves {motions} rigid motions free")]
+    Loose { motions: usize },
 }
 
 impl ModesError {
@@ -70,10 +72,30 @@ pub fn within(
     fields: &[Vec<Vec3>],
     apart_from: &[Vec<Vec3>],
 ) -> Result<RitzPairs, ModesError> {
-    let free: Vec<(usize, Mat3)> =
-        system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free)).collect();
     let (stiffness, mass) = matrices(system, state, around, ws)?;
-    Ok(pairs_within(stiffness, &mass, &vanishing(fields, &free), apart_from)?)
+    Ok(pairs_within(stiffness, &mass, &vanishing(fields, &free(system)), apart_from)?)
+}
+
+/// Whether constraints hold the points of a system as a whole, which are its velocity blocks, from where they are in coordinates of about one: spaces of modes
+/// that are given show rigid motions as frequencies of rounding alone.
+///
+/// # Errors
+/// They leave rigid motions.
+pub fn refuse_loose(system: &System, places: &[Vec3]) -> Result<(), ModesError> {
+    let motions = vanishing(&rigid_motions(places), &free(system)).len();
+    if motions == 0 { Ok(()) } else { Err(ModesError::Loose { motions }) }
+}
+
+/// The six fields of points that move together, and turn about the origin.
+pub fn rigid_motions(places: &[Vec3]) -> Vec<Vec<Vec3>> {
+    let moved = Vec3::AXES.map(|axis| vec![axis; places.len()]);
+    let turned = Vec3::AXES.map(|axis| places.iter().map(|x| axis.cross(*x)).collect());
+    [moved, turned].concat()
+}
+
+/// Held blocks, with what projects them to where they may go.
+fn free(system: &System) -> Vec<(usize, Mat3)> {
+    system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free)).collect()
 }
 
 /// Stiffness and mass about the placed rows. Held directions have no mass, and so take no part.

@@ -198,6 +198,11 @@ fn deformations_of_the_whole_are_beside_modes() {
     told("deformable_primitive", &of("\"shear_xz\", \"shear_xz\""), &["`shear_xz` is there twice"]);
     told("deformable_primitive", "bodies.primitive.modes.global_stiffness=0", &["global_stiffness"]);
     told("deformable_primitive", "bodies.primitive.modes.degree=6", &["degree"]);
+    told(
+        "deformable_primitive",
+        &of("\"twist_x\", \"twist_y\", \"twist_z\""),
+        &["1 make others", "of three twists two"],
+    );
     let held = "bodies.beam.modes={ count = 2, global = [\"stretch_x\"] }";
     told("modal_cantilever", held, &["is held", "without pins"]);
     told(
@@ -205,4 +210,50 @@ fn deformations_of_the_whole_are_beside_modes() {
         "bodies.beam.modes={ count = 7, degree = 1 }",
         &["has 3 modes, not 7", "a higher `degree`"],
     );
+    // pins that leave motions, which the factor of a mesh shows and a given space would take for slow modes
+    for hinge in ["{ region = { nearest = [0, 0, 0] } }", "{ region = \"x_min\", axes = \"yz\" }"] {
+        let settings =
+            [format!("bodies.beam.pins=[{hinge}]"), "bodies.beam.modes={ count = 2, degree = 2 }".to_owned()];
+        let said = read("modal_cantilever", &settings.each_ref().map(|text| text.as_str()))
+            .map(|_| ())
+            .expect_err("a fault");
+        assert!(said.contains("rigid motions free") && said.contains("or none"), "{said}");
+    }
+    let coarse = [
+        "bodies.beam.mesh={ generate = \"bar\", size = [0.5, 0.1, 0.1], cells = [1, 1, 1], element = \"hex8\" }",
+        "bodies.beam.modes={ count = 17, global = [\"stretch_x\", \"stretch_y\"] }",
+    ];
+    let said = read("modal_spinning", &coarse).map(|_| ()).expect_err("a fault");
+    assert!(said.contains("has 16 modes, not 17"), "{said}");
+}
+
+/// Within polynomials there are as many modes as their space has beside rigid motions and the whole: 30 − 6 − 6 of the second degree.
+#[test]
+fn modes_are_counted_in_their_space() {
+    let of = |count: usize| {
+        let settings =
+            [format!("bodies.primitive.modes.count={count}"), "bodies.primitive.modes.degree=2".to_owned()];
+        read("deformable_primitive", &settings.each_ref().map(|text| text.as_str())).map(|_| ())
+    };
+    assert!(of(18).is_ok());
+    let said = of(19).expect_err("a fault");
+    assert!(said.contains("has 18 modes, not 19"), "{said}");
+}
+
+/// The axes of what deforms a whole are the body's: turned at rest, it has the same frequencies beside it.
+#[test]
+fn deformations_of_the_whole_turn_with_the_body() {
+    let hertz = |turned: &str| {
+        let settings = ["bodies.beam.modes={ count = 3, global = [\"bend_xz\"] }", turned];
+        let scene = read("modal_spinning", &settings).unwrap_or_else(|errors| panic!("{errors}"));
+        scene.bodies[0].reduced.as_ref().and_then(|reduced| reduced.hertz.clone()).expect("modes")
+    };
+    let (straight, turned) = (
+        hertz("world.period=\"1 ms\""),
+        hertz("bodies.beam.rotate={ axis = [1, 2, 3], angle = \"40 deg\" }"),
+    );
+    for (a, b) in straight.iter().zip(&turned) {
+        // pairs of the iteration to 1e-10 of the shapes, squares of which frequencies see
+        assert!((a / b - 1.0).abs() < 1e-8, "{straight:?} {turned:?}");
+    }
 }

@@ -76,7 +76,8 @@ impl GlobalDeformation {
             "shear" => GlobalKind::Shear,
             "taper" => GlobalKind::Taper,
             "twist" => GlobalKind::Twist,
-            _ => GlobalKind::Bend,
+            "bend" => GlobalKind::Bend,
+            _ => return None,
         };
         Some(Self { kind, along, towards: towards.unwrap_or(along) })
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use souple_engine::modes::{ModesError, RitzPairs, Settings, lowest, within};
+use souple_engine::modes::{ModesError, RitzPairs, Settings, lowest, refuse_loose, rigid_motions, within};
 use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, System, UnknownKind};
 use souple_math::{Mat3, Vec3};
 use souple_models::materials::Material;
@@ -163,7 +163,8 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
             let name = &body.spec.name;
             match error.available() {
                 Some(available) => {
-                    let most = available.saturating_sub(if is_held { 0 } else { RIGID });
+                    let others = spec.global.len() + if is_held { 0 } else { RIGID };
+                    let most = available.saturating_sub(others);
                     let message = format!("body `{name}` has {most} modes, not {}", spec.count);
                     refuse(message, "a smaller `count`, a finer mesh or a higher `degree`");
                 }
@@ -175,6 +176,19 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
             return None;
         }
     };
+    if global.shapes.len() < spec.global.len() {
+        let message = format!(
+            "of the {} `global` deformations of body `{}` {} make others, or nothing but rigid motions, on this mesh",
+            spec.global.len(),
+            body.spec.name,
+            spec.global.len() - global.shapes.len()
+        );
+        refuse(
+            message,
+            "deformations that none of the others make together: of three twists two, of a mesh of one cell fewer",
+        );
+        return None;
+    }
     let rigid = if is_held { 0 } else { RIGID };
     let values = &modes.eigenvalues;
     let first = values[rigid];
@@ -290,9 +304,15 @@ fn modes_of(
     let state = State { systems: vec![system.initial_state(points)], ..State::default() };
     let model = Model { period: draft.spec.world.period, systems: vec![system], ..Model::default() };
     model.start(state).with_system(0, |system, state, around, ws| {
-        let mut modes = if let Some(degree) = spec.degree {
+        let polynomials = spec.degree.map(|degree| {
             let places: Vec<Vec3> = body.mesh.points.iter().map(coordinates).collect();
-            within(system, state, around, ws, &monomials(degree, &places), &[])?
+            (monomials(degree, &places), places)
+        });
+        let mut modes = if let Some((fields, places)) = &polynomials {
+            if is_held {
+                refuse_loose(system, places)?;
+            }
+            within(system, state, around, ws, fields, &[])?
         } else {
             // across deformations of the whole there are as many fewer
             let settings = Settings { count: wanted + spec.global.len(), shift, ..Settings::default() };
@@ -301,19 +321,25 @@ fn modes_of(
         };
         let mut global = RitzPairs::default();
         if !spec.global.is_empty() && modes.shapes.len() > rigid {
-            let (motions, natural) = modes.shapes.split_at(rigid);
-            for deformation in &spec.global {
-                let field = body.mesh.points.iter().map(|x| deformation.at(*x - centre)).collect();
-                global.append(within(system, state, around, ws, &[field], motions)?);
+            let arms: Vec<Vec3> = body.mesh.points.iter().map(|x| *x - centre).collect();
+            let axes = souple_math::exponential(body.spec.placement.rotation);
+            let fields: Vec<Vec<Vec3>> = (spec.global.iter())
+                .map(|of| arms.iter().map(|s| axes * of.at(axes.transpose() * *s)).collect())
+                .collect();
+            let mut apart = rigid_motions(&arms);
+            global = within(system, state, around, ws, &fields, &apart)?;
+            if global.shapes.len() < fields.len() {
+                return Ok(Found { modes, global });
             }
-            let apart = [motions, &global.shapes].concat();
-            let across = within(system, state, around, ws, natural, &apart)?;
+            apart.extend(global.shapes.iter().cloned());
+            let space = polynomials.as_ref().map_or(&modes.shapes[rigid..], |(fields, _)| fields);
+            let across = within(system, state, around, ws, space, &apart)?;
             modes.truncate(rigid);
             modes.append(across);
         }
         let available = modes.shapes.len();
         if available < wanted {
-            return Err(ModesError::too_many(wanted, available));
+            return Err(ModesError::too_many(wanted + spec.global.len(), available + spec.global.len()));
         }
         modes.truncate(wanted);
         Ok(Found { modes, global })

@@ -9,7 +9,7 @@ use crate::reader::Reader;
 
 /// Most modes that are sought of one body.
 const MOST_MODES: f64 = 200.0;
-/// Polynomials of the fifth degree have 168 numbers; above, powers of a coordinate are told apart by rounding.
+/// Polynomials of the fifth degree have 168 numbers: as many fields over all points are kept while modes are sought.
 const HIGHEST_DEGREE: f64 = 5.0;
 
 pub(crate) static MODES: Keys = Keys::new(
@@ -32,7 +32,7 @@ pub(crate) static MODES: Keys = Keys::new(
         Key::new(
             "global",
             Shape::Texts,
-            "deformations of the whole of a free body beside the modes, which are sought across them: stretch_x, twist_x, shear_xy, taper_xy, bend_xy, of other axes too",
+            "deformations of the whole of a free body beside the modes, which are sought across them: stretch_x, twist_x, shear_xy, taper_xy, bend_xy, of other axes too, which turn with `rotate`",
         ),
         Key::number(
             "global_stiffness",

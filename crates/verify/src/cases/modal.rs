@@ -242,4 +242,16 @@ pub(super) const CASES: &[Case] = &[
         source: "Rayleigh's quotient of the field x e_x × s, sections that stay plane: omega^2 = 12 G / (rho L^2)",
         ..GLOBAL
     },
+    Case {
+        id: "global_poisson",
+        what: "at which a cube is squashed at constant volume, by stretches along all three axes",
+        settings: &[
+            r#"bodies.beam.mesh={ generate = "bar", size = [0.5, 0.5, 0.5], cells = [4, 4, 4], element = "hex8" }"#,
+            "bodies.beam.material.poissons_ratio=0.25",
+            "bodies.beam.material.youngs_modulus=1028.0837917801414",
+            "bodies.beam.modes={ count = 1, global = [\"stretch_x\", \"stretch_y\", \"stretch_z\"] }",
+        ],
+        source: "Rayleigh's quotient of a x e_x + b y e_y + c z e_z with a + b + c = 0: omega^2 = 24 G / (rho L^2)",
+        ..GLOBAL
+    },
 ];
