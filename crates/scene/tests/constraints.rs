@@ -561,3 +561,71 @@ fn flows_go_on_from_state() {
     assert_eq!(whole.state().systems[0].q, second.state().systems[0].q);
     assert_eq!(whole.state().systems[0].memory, second.state().systems[0].memory);
 }
+
+/// Masses of 0.5 kg at a distance of 1 m from the middle, pressed inward, on a constraint that bears 9.
+fn pressed(corners: &[[f64; 3]], constraint: &str, force: f64) -> World {
+    let loads: Vec<String> = corners
+        .iter()
+        .map(|x| {
+            let push = x.map(|x| -force * x);
+            format!("[[networks.ring.loads]]\nregion = {{ nearest = {x:?} }}\nforce = {push:?}\n")
+        })
+        .collect();
+    let text = format!(
+        "format = 1\n[world]\nperiod = \"1 ms\"\n[systems.main]\nstepper = {{ name = \"t_simulation\", start = \"trajectory\" }}\n\
+         [networks.ring.masses.corners]\npositions = {corners:?}\nmass = 0.5\n\
+         [[networks.ring.constraints]]\n{constraint}\nyields_at = 9\n{}",
+        loads.concat()
+    );
+    started(&text, &[])
+}
+
+/// Presses beyond what is borne, `Y ∂g/∂r` of each mass, and within it: masses move by `m r'' = Y ∂g/∂r − F`, in central differences, or not at all.
+fn assert_gives_way(corners: &[[f64; 3]], constraint: &str, gradient: fn(f64) -> f64) -> f64 {
+    let radii =
+        |world: &World| -> Vec<f64> { world.state().systems[0].q.iter().map(|x| x.length()).collect() };
+    let (limit, h) = (9.0, 1e-3);
+    let force = 1.2 * limit * gradient(1.0);
+    let mut world = pressed(corners, constraint, force);
+    let acceleration = |r: f64| (limit * gradient(r) - force) / 0.5;
+    let (mut before, mut now) = (1.0 + 0.5 * h * h * acceleration(1.0), 1.0);
+    for _ in 0..200 {
+        world.step().unwrap();
+        (before, now) = (now, 2.0 * now - before + h * h * acceleration(now));
+        // 200² roundings of second differences
+        assert!(radii(&world).iter().all(|r| (r - now).abs() < 1e-11), "{now}: {:?}", radii(&world));
+    }
+    let mut held = pressed(corners, constraint, 0.999 * limit * gradient(1.0));
+    for _ in 0..200 {
+        held.step().unwrap();
+    }
+    assert!(radii(&held).iter().all(|r| (r - 1.0).abs() < 1e-11), "{:?}", radii(&held));
+    now
+}
+
+/// An area bears `Y` per unit of length of what encloses it, and is pressed together beyond that.
+#[test]
+fn areas_give_way() {
+    let ring = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
+    // 2 r² within, of four
+    let now = assert_gives_way(&ring, "area = {}", |r| r);
+    // r = F/Y + (1 − F/Y) cosh(√(Y/m) t); differences are off by (κ h)²/24 of the way, κ t = 0.85
+    let exact = 1.2 - 0.2 * (18.0_f64.sqrt() * 0.2).cosh();
+    assert!((now - exact).abs() < 1e-6, "{now} {exact}");
+}
+
+/// A volume bears the pressure `Y`.
+#[test]
+fn volumes_give_way() {
+    let corners = [
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [-1.0, 0.0, 0.0],
+        [0.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ];
+    let triangles = "volume = { triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]] }";
+    // 4/3 r³ within, of six
+    assert_gives_way(&corners, triangles, |r| 2.0 / 3.0 * r * r);
+}
