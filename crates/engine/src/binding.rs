@@ -80,6 +80,11 @@ pub trait Binding: Send + Sync {
     /// `g(x, t)`; zero in the components that it has not.
     fn value(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3;
 
+    /// What its value repeats by, where it is one number of which whole turns make no difference; 0 of others.
+    fn period(&self, _relation: usize) -> f64 {
+        0.0
+    }
+
     /// `∂g/∂x` for each of its rows in turn: the gradient of a component in each row of the matrix.
     fn add_gradients(&self, relation: usize, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
 
@@ -103,6 +108,12 @@ pub trait Binding: Send + Sync {
 
     /// What it is, in words.
     fn describe(&self, relation: usize) -> String;
+}
+
+/// The value of a relation where whole periods make no difference: the one nearest to another, so that what flows on does not come back.
+fn value_near(binding: &dyn Binding, relation: usize, (positions, time): (&[Vec3], f64), near: Vec3) -> Vec3 {
+    let (value, period) = (binding.value(relation, positions, time), binding.period(relation));
+    if period > 0.0 { value - Vec3::X * (period * ((value.x - near.x) / period).round()) } else { value }
 }
 
 /// Numbers in the memory of a force with so many relations: the work that it has done [J], the multipliers, what is known of before, and that
@@ -759,10 +770,10 @@ impl Bound {
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(binding) = system.binding(*force) else { continue };
             binding.add_gradients(*relation, positions, start, &mut self.gradients);
-            let now = binding.value(*relation, positions, start);
-            self.now.push(now);
             let memory = &next.memory[system.memory_range(*force)];
             let flow = Vec3::X * flow(memory, binding.relation_count(), *relation);
+            let now = value_near(binding, *relation, (positions, start), flow);
+            self.now.push(now);
             let earlier = self.earlier(step, structure, index, (positions, memory)).from(flow);
             let wanted = flow + binding.wanted(*relation, earlier, now - flow, start, timestep);
             let entries = structure.starts[index]..structure.starts[index + 1];
@@ -873,7 +884,8 @@ impl Bound {
     fn allow(&mut self, step: &Step, structure: &Structure) {
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(binding) = step.system.binding(*force) else { continue };
-            let off = self.wanted[index] - binding.value(*relation, &self.places, step.end());
+            let wanted = self.wanted[index];
+            let off = wanted - value_near(binding, *relation, (&self.places, step.end()), wanted);
             let magnitude = binding.magnitude(*relation, &self.places, step.end());
             self.near[index] += Vec3::from_array(off.to_array().map(|off| TOLERANCE * off.abs()));
             self.near[index] += magnitude * ROUNDING;
@@ -886,7 +898,8 @@ impl Bound {
         let mut worst: Option<(usize, f64)> = None;
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(binding) = step.system.binding(*force) else { continue };
-            let off = self.wanted[index] - binding.value(*relation, &self.places, step.end());
+            let wanted = self.wanted[index];
+            let off = wanted - value_near(binding, *relation, (&self.places, step.end()), wanted);
             if !off.is_finite() {
                 return Err(fault(step, structure, index, "has no value where the step leads"));
             }
@@ -917,8 +930,9 @@ impl Bound {
             {
                 // the limit itself, by which the next step knows that it flows
                 multiplier.x = self.flowing[index].sign() * limit;
-                let value = binding.value(*relation, &self.places, step.end());
-                memory[memory_len(count) + relation] += (value - self.wanted[index]).x;
+                let wanted = self.wanted[index];
+                let value = value_near(binding, *relation, (&self.places, step.end()), wanted);
+                memory[memory_len(count) + relation] += (value - wanted).x;
             }
             set_multiplier(memory, *relation, multiplier);
             set_earlier(memory, (count, *relation), known::VALUES, self.now[index]);

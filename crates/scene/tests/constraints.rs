@@ -629,3 +629,47 @@ fn volumes_give_way() {
     // 4/3 r³ within, of six
     assert_gives_way(&corners, triangles, |r| 2.0 / 3.0 * r * r);
 }
+
+/// An elbow that gives way is wound up beyond half a turn, and beyond whole ones: what it is to be goes along, `m r² θ'' = M − Y`.
+#[test]
+fn corners_give_way_beyond_whole_turns() {
+    let text = r#"
+format = 1
+[world]
+period = "1 ms"
+[systems.main]
+stepper = { name = "t_simulation", start = "trajectory" }
+[networks.arm.masses.joints]
+positions = [[0, 0, 0], [1, 0, 0], [1.8, 0.1, 0]]
+mass = 1
+[[networks.arm.pins]]
+region = { box = [[-1, -1, -1], [1.1, 0.05, 1]] }
+[[networks.arm.constraints]]
+name = "rods"
+rod = { from = [1], to = [2] }
+[[networks.arm.constraints]]
+name = "elbow"
+angle = { corners = [[0, 1, 2]], axis = [0, 0, 1] }
+yields_at = 1
+[[networks.arm.loads]]
+region = { nearest = [1.8, 0.1, 0] }
+force = ["-20 * y", "20 * (x - 1)", 0]
+"#;
+    let mut world = started(text, &[]);
+    let square: f64 = 0.64 + 0.01;
+    let (mut angle, mut before) = (0.0, 0.1_f64.atan2(0.8));
+    for _ in 0..1500 {
+        world.step().unwrap();
+        let hand = world.state().systems[0].q[2];
+        let now = hand.y.atan2(hand.x - 1.0);
+        let turned = now - before;
+        angle += turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
+        before = now;
+    }
+    let expected = 0.5 * (20.0 * square - 1.0) / square * 1.5_f64.powi(2);
+    // more than three turns; steps turn by 0.03 at most, and forces across chords lose the square of that over 24
+    assert!(
+        (angle / expected - 1.0).abs() < 1e-3 && expected > 6.0 * std::f64::consts::PI,
+        "{angle} {expected}"
+    );
+}

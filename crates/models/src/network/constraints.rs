@@ -138,6 +138,10 @@ impl Binding for Constraints {
         self.relations[relation].value(positions, time)
     }
 
+    fn period(&self, relation: usize) -> f64 {
+        self.relations[relation].period()
+    }
+
     fn add_gradients(&self, relation: usize, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>) {
         self.relations[relation].add_gradients(positions, time, gradients);
     }

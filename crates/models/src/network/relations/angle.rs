@@ -60,6 +60,10 @@ impl Relation for Angle {
         Vec3::X * (off - whole_turns)
     }
 
+    fn period(&self) -> f64 {
+        if self.axis.is_some() { TAU } else { 0.0 }
+    }
+
     // ∂θ/∂u = −n × u/|u|², ∂θ/∂w = n × w/|w|²; how n turns with both changes nothing
     fn add_gradients(&self, positions: &[Vec3], _time: f64, gradients: &mut Vec<Mat3>) {
         let Legs { axis, u, w } = self.legs(positions);

@@ -31,6 +31,11 @@ pub trait Relation: Send + Sync + Debug {
 
     fn value(&self, positions: &[Vec3], time: f64) -> Vec3;
 
+    /// What `g` repeats by; 0 where it does not.
+    fn period(&self) -> f64 {
+        0.0
+    }
+
     /// `∂g/∂x` for each row in turn: the gradient of a component in each row of the matrix.
     fn add_gradients(&self, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
 
