@@ -2,12 +2,14 @@
 //! that the crate stands on.
 
 mod adaptive;
+mod bending;
 mod common;
 mod crowds;
 mod emitted_code;
 mod formulations;
 mod frames;
 mod implicit;
+mod inelastic;
 mod kept_laws;
 mod materials;
 mod multiresolution;

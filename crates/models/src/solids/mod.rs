@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod assembly;
+mod bending;
 pub mod derived;
 mod difference;
 mod eight_samples;
@@ -9,6 +10,7 @@ mod elements;
 mod formulation;
 pub(crate) mod geometry;
 mod group;
+mod inelastic;
 mod kernel;
 pub(crate) mod layout;
 mod linear_elements;
@@ -58,6 +60,9 @@ use stiffness::{Shapes, Stiffness};
 use turned::{AXES_LEN, TurnedRows, TurnedSamples};
 
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
+pub use bending::{
+    Bending, BendingDescription, BendingError, HeldSlope, Plate, Rigidities, plane_axes, rigidity_of_law,
+};
 pub use difference::DifferencedForce;
 pub(crate) use formulation::four_loop_count;
 pub(crate) use formulation::linear_pairs;
@@ -65,6 +70,7 @@ pub use formulation::{
     BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, formulated, keeps_texts,
     operator_quality,
 };
+pub use inelastic::{Amount, Fracture, InelasticForce, Inelasticity, Yielding};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass, voronoi_mass};
 pub use quadrature::Quadrature;

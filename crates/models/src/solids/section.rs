@@ -62,7 +62,7 @@ pub static SECTIONS: Table<BuildSection> = Table {
         },
         &Entry {
             name: "membrane",
-            summary: "skin without bending stiffness, free to move in space; objective isotropic laws",
+            summary: "skin, free to move in space, that resists bending only where its body has `bending`; objective isotropic laws",
             source: "Oden & Sato 1967; own condensation",
             parameters: &[THICKNESS],
             build: |values| Section::Membrane { thickness: values.number("thickness") },

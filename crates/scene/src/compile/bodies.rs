@@ -11,8 +11,9 @@ use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::{self, Material};
 use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
-    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
-    SolidForce, Viscosity, consistent_mass, formulated, lumped_mass, uniform_mass, voronoi_mass,
+    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, InelasticForce, RayleighDamping,
+    SolidDescription, SolidForce, Viscosity, consistent_mass, formulated, lumped_mass, uniform_mass,
+    voronoi_mass,
 };
 
 use super::frames::PlacedFrames;
@@ -21,8 +22,8 @@ use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
 use super::reduced::{self, PlacedReduced};
 use super::{
-    Draft, axes, frames, hanging, inertial, levels, material_fields, modes, network, octree, section, shape,
-    start, tissue,
+    Draft, axes, bending, frames, hanging, inertial, levels, material_fields, modes, network, octree,
+    section, shape, start, tissue,
 };
 use crate::diagnostic::{Code, Site};
 use crate::reader::Chosen;
@@ -268,6 +269,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             continue;
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
+        let bending = bending::force(draft, body);
         check_together(draft, body.spec);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
             frames.add_mass(body.spec.mass, &density, &mut mass);
@@ -293,6 +295,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         if let Err(error) = add_solid(body.spec, description, &mut forces) {
             report(draft, body.spec, &error);
         }
+        forces.extend(bending);
     }
     mass.seal();
     add_outer_forces(draft, index, &mass, &kinematics, &mut forces);
@@ -332,6 +335,10 @@ fn add_solid(
     description: SolidDescription,
     forces: &mut Vec<Box<dyn Force>>,
 ) -> Result<(), FormulationError> {
+    if let Some(spec) = &body.inelasticity {
+        forces.push(Box::new(InelasticForce::new(&description, spec.rules)?));
+        return add_damping(body, description, forces);
+    }
     let elastic: Box<dyn Force> = match (&body.formulation, adapted(body, description.materials.len())) {
         (Some(chosen), _) => formulated(chosen.entry.build, &description, &chosen.values)?,
         (None, Some((seconds, adaptation))) => {
@@ -345,6 +352,15 @@ fn add_solid(
             Box::new(DifferencedForce::new(elastic, description.mesh, description.first_row))
         }
     });
+    add_damping(body, description, forces)
+}
+
+/// What damps the strain of a body.
+fn add_damping(
+    body: &Body,
+    description: SolidDescription,
+    forces: &mut Vec<Box<dyn Force>>,
+) -> Result<(), FormulationError> {
     let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
     if rayleigh_stiffness > 0.0 {
         let name = format!("{}.rayleigh_stiffness", body.name);
@@ -372,6 +388,33 @@ fn adapted(body: &Body, count: usize) -> Option<(Vec<Material>, Adaptation)> {
         }
     }
     Some((seconds, adapt.adaptation.clone()))
+}
+
+/// Reports what a body whose rest shape gives way cannot have besides.
+fn check_inelasticity(draft: &Draft, body: &Body) {
+    let Some(spec) = &body.inelasticity else { return };
+    let others = [
+        ("frames", body.frames.is_some()),
+        ("modes", body.modes.is_some()),
+        ("polynomial", body.polynomial.is_some()),
+        ("levels", body.levels.is_some()),
+        ("octree", body.octree.is_some()),
+        ("section", body.section().dimension() < 3),
+        ("formulation", body.formulation.is_some()),
+        ("adapt", body.adapt.is_some()),
+        ("tangent = \"difference\"", body.tangent == TangentKind::Difference),
+    ];
+    for (other, _) in others.into_iter().filter(|(_, is_there)| *is_there) {
+        let message =
+            format!("body `{}` has `{other}`, and its rest shape cannot give way besides", body.name);
+        draft.log.add(Code::Conflict, &spec.site, message, "a body of volume elements that has none of it");
+    }
+    let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
+    if spec.rules.fracture.is_some() && (rayleigh_stiffness > 0.0 || viscosity > 0.0) {
+        let message = format!("what damps the strain of body `{}` would hold torn cells together", body.name);
+        let expected = "`rayleigh_mass`, or no `fracture`";
+        draft.log.add(Code::Conflict, &spec.site, message, expected);
+    }
 }
 
 /// Reports what a body cannot have together.
@@ -402,6 +445,7 @@ fn check_together(draft: &Draft, body: &Body) {
         let message = format!("the points of body `{}` follow its frames or levels", body.name);
         report(&start.site, message, "`velocity` and `angular_velocity`, or a body of points alone");
     }
+    check_inelasticity(draft, body);
     let Some(adapt) = &body.adapt else { return };
     let others = [
         ("frames", body.frames.is_some()),

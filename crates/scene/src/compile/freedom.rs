@@ -13,8 +13,8 @@ use souple_mesh::Sets;
 use souple_models::contact::{ContactPoint, Shape};
 use souple_models::loads::RigidMotion;
 
-use super::Draft;
 use super::bodies::Placed;
+use super::{Draft, bending};
 use crate::diagnostic::Code;
 
 /// Something that hinders motion: `Σ w u(row) · d = 0`.
@@ -149,6 +149,12 @@ fn joints_of(draft: &Draft, system: usize) -> Vec<Joint> {
             let rows = draft.selector(body).points(region).into_iter().map(|p| body.rows.start as u32 + p);
             joints.extend(rows.map(|row| Joint { system, ends: vec![(row, 1.0)], direction: None }));
         }
+        let place = |row: u32| body.mesh.points[row as usize - body.rows.start];
+        let slopes = bending::of(draft, body).into_iter().flat_map(|bending| bending.clamps(place));
+        joints.extend(slopes.map(|slope| {
+            let direction = slope.normal.try_normalised();
+            Joint { system, ends: slope.ends.to_vec(), direction }
+        }));
     }
     joints
 }

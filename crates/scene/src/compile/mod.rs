@@ -1,6 +1,7 @@
 //! From a specification to a model and a state.
 
 mod axes;
+mod bending;
 mod bodies;
 mod bones;
 mod boundary;

@@ -8,8 +8,10 @@ use souple_models::solids::{BuildFormulation, BuildSection, FORMULATIONS, Quadra
 use souple_table::{Range, Value};
 
 use super::adapt::{ADAPT, AdaptSpec};
+use super::bending::{BENDING, BendingSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
+use super::inelasticity::{INELASTICITY, InelasticitySpec};
 use super::levels::{LEVELS, LevelsSpec};
 use super::marks::{MARKS, MarksSpec};
 use super::mesh::{MESH, MeshSpec};
@@ -140,6 +142,16 @@ pub(crate) static BODY: Keys = Keys::new(
             Shape::Entry(SECTION),
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
+        Key::new(
+            "bending",
+            Shape::Table(&BENDING),
+            "how it resists bending where it is a membrane of triangles: a thin shell",
+        ),
+        Key::new(
+            "inelasticity",
+            Shape::Table(&INELASTICITY),
+            "how its rest shape gives way: creep, yielding, fracture",
+        ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("modes", Shape::Table(&MODES), "its natural modes carry it, in the place of its mesh"),
         Key::new(
@@ -219,6 +231,10 @@ pub struct Body {
     pub material: Option<Chosen<materials::Build>>,
     /// What its cells are sections of; volumes where left out.
     pub section: Option<Chosen<BuildSection>>,
+    /// How it resists bending; as a membrane does, not at all, where left out.
+    pub bending: Option<BendingSpec>,
+    /// How its rest shape gives way; not at all where left out.
+    pub inelasticity: Option<InelasticitySpec>,
     /// What carries it; the points of its mesh where left out.
     pub frames: Option<FramesSpec>,
     /// Natural modes that it moves in.
@@ -439,6 +455,8 @@ impl Body {
             material_fields: material_fields.collect(),
             material,
             section: reader.entry("section", &SECTIONS),
+            bending: reader.table("bending").map(|table| BendingSpec::read(&table)),
+            inelasticity: reader.table("inelasticity").map(|table| InelasticitySpec::read(&table)),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             modes: reader.table("modes").map(|table| ModesSpec::read(&table)),
             polynomial: reader.table("polynomial").map(|table| PolynomialSpec::read(&table)),

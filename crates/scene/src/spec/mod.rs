@@ -1,6 +1,7 @@
 //! The specification of a scene: what its text says, checked key by key, before anything is built.
 
 pub mod adapt;
+pub mod bending;
 pub mod body;
 pub mod bone;
 pub mod boundary;
@@ -9,6 +10,7 @@ pub mod control;
 pub mod expect;
 pub mod frames;
 pub mod hand;
+pub mod inelasticity;
 pub mod interaction;
 pub mod levels;
 pub mod marks;

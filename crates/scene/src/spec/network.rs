@@ -443,6 +443,8 @@ impl Network {
             mesh: None,
             material: None,
             section: None,
+            bending: None,
+            inelasticity: None,
             axes: None,
             material_fields: Vec::new(),
             regions: Vec::new(),

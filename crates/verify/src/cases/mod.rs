@@ -22,6 +22,7 @@ mod frequencies;
 mod hands;
 mod heat;
 mod implicit;
+mod inelastic;
 mod late;
 mod levels;
 mod loads;
@@ -46,6 +47,7 @@ mod rheology;
 mod rheometer;
 mod rigid;
 mod rubber;
+mod shells;
 mod skins;
 mod soft_cube;
 mod step_limits;
@@ -88,6 +90,7 @@ pub const TABLES: &[&[Case]] = &[
     energy::CASES,
     explicit::CASES,
     implicit::CASES,
+    inelastic::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
     two_steppers::CASES,
@@ -144,6 +147,7 @@ pub const TABLES: &[&[Case]] = &[
     late::CASES,
     tools::CASES,
     marks::CASES,
+    shells::CASES,
     skins::CASES,
 ];
 
