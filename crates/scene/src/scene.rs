@@ -508,6 +508,10 @@ pub struct PlannedControl {
     pub driven: usize,
     /// Magnitude that its actuator gives at most [N].
     pub largest: f64,
+    /// Its network, whose masses its gains may be of, with their system and their rows there.
+    pub body: String,
+    pub system: usize,
+    pub rows: Range<usize>,
 }
 
 /// The same without the files of planned commands, which there need not be yet, and the controls that would read them: they command nothing.
@@ -527,9 +531,14 @@ pub fn read_file_to_plan(
                 if !matches!(control.drives, Some(Drives::Plan { .. })) {
                     continue;
                 }
-                let (name, largest) =
-                    (format!("{}.{}", body.name, control.name), network.largest(control.of.name()));
-                planned.push(PlannedControl { name, driven: 0, largest });
+                planned.push(PlannedControl {
+                    name: format!("{}.{}", body.name, control.name),
+                    driven: 0,
+                    largest: network.largest(control.of.name()),
+                    body: body.name.clone(),
+                    system: 0,
+                    rows: 0..0,
+                });
                 network.controls[index].drives = Formula::compile("0", &VARIABLES).ok().map(Drives::Command);
             }
         }
@@ -538,6 +547,9 @@ pub fn read_file_to_plan(
     for control in &mut planned {
         let found = scene.model.controls.iter().find(|other| other.name() == control.name);
         control.driven = found.map_or(0, |found| found.driven());
+        if let Some(body) = scene.bodies.iter().find(|body| body.name == control.body) {
+            (control.system, control.rows) = (body.system, body.rows.clone());
+        }
     }
     Ok((scene, planned))
 }

@@ -334,3 +334,44 @@ fn plans_are_read() {
         "{message}"
     );
 }
+
+/// Gains of a plan answer to what masses are off, up to the largest, and are left aside where that is asked for.
+#[test]
+fn gains_answer_to_deviations() {
+    let text = "format = 1\n[world]\nperiod = \"10 ms\"\n[systems.main]\nstepper = \"verlet\"\n\
+        [networks.n.masses.cart]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 2\n\
+        [networks.n.actuators.motor]\nof = \"cart\"\ndirection = [1, 0, 0]\nlargest = 6\n\
+        [networks.n.controls.drive]\nactuator = \"motor\"\nplan = \"a.csv\"\n";
+    let read = |text: &str, plan: &str| read_text_with_files("net.toml", text, &[("a.csv", plan)], &[]);
+    let head =
+        "time [s],n.drive [N],n[1].x [m],n[0].v.x [m/s],n.drive / n[1].x [N/m],n.drive / n[0].v.x [N s/m]\n";
+    let plan = format!("{head}0,1,0.5,0.25,2,4\n0.01,1,0.5,0.25,2,400\n0.02,0,0,0,0,0\n");
+    let start = |text: &str| {
+        let scene = read(text, &plan).unwrap_or_else(|faults| panic!("{faults}"));
+        scene.model.start(scene.state)
+    };
+    let (mut world, mut without) = (start(text), start(&format!("{text}feedback = false\n")));
+    let (mut x, mut v, mut speed, h, mass) = (1.0_f64, 0.0_f64, 0.0_f64, 0.01, 4.0);
+    for (command, gain) in [(1.0, [2.0, 4.0]), (1.0, [2.0, 400.0]), (0.0, [0.0; 2])] {
+        world.step().unwrap();
+        without.step().unwrap();
+        let u = (command - gain[0] * (x - 0.5) - gain[1] * (v - 0.25)).clamp(-6.0, 6.0);
+        (x, v) = (x + h * v + 0.5 * h * h * u / mass, v + h * u / mass);
+        speed += h * command / mass;
+        // a few roundings
+        let state = &world.state().systems[0];
+        assert!((state.q[1].x - x).abs() < 1e-14 && (state.v[0].x - v).abs() < 1e-14, "{state:?}");
+        assert!((without.state().systems[0].v[0].x - speed).abs() < 1e-15);
+    }
+    for (from, to, words) in [
+        ("n.drive / n[1].x", "n.drive / n[2].x", "a gain is of `n[2].x`"),
+        ("n.drive / n[1].x", "n.drive / n[1].w", "a gain is of `n[1].w`"),
+        (",n[1].x", ",n[1].y", "a gain is of `n[1].x`"),
+    ] {
+        let message = read(text, &plan.replacen(from, to, 1)).err().expect("a refusal").to_string();
+        assert!(message.contains(words) && message.contains("`n[0].x` to `n[1].v.z`"), "{message}");
+    }
+    let idle = text.replace("plan = \"a.csv\"", "value = \"1\"\nfeedback = true");
+    let message = read(&idle, &plan).err().expect("a refusal").to_string();
+    assert!(message.contains("has no plan"), "{message}");
+}

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
-pub use motion::{FoundMotion, KeyState, Motion, Planner};
+pub use motion::{Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner};
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};

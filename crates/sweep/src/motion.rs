@@ -5,6 +5,12 @@
 //! iteration; what is solved for is `G (U − u) = y* − y` with the least `Σ w U²`, `U = W⁻¹Gᵀ (G W⁻¹Gᵀ)⁻¹ (y* − y + G u)`, where a row of `G`
 //! comes of the gradient of its key by `g_n = B_nᵀ λ`, `λ ← A_nᵀ λ` back in time. `A_n` and `B_n` are central differences of the step
 //! about the trajectory. A step is taken as far as `Σ w u² + Σ ρ |y* − y|` falls; of a linear network the first is the answer.
+//!
+//! Linear-quadratic control (Brotman and Netravali, 1988) asks for `∫ Σ q (y − y*)² + Σ w u² dt` to be the least, with keys that are met
+//! exactly or at a price, and gives gains for what comes in between beside commands ([`linear_quadratic`]).
+
+mod linear_quadratic;
+mod riccati;
 
 use souple_engine::{Interruption, State, World};
 use souple_io::Column;
@@ -19,12 +25,26 @@ use crate::study::Study;
 /// A motion that is sought.
 #[derive(Clone, Debug)]
 pub struct Motion {
+    pub kind: Kind,
     pub keys: Vec<KeyState>,
     /// What the square of a command costs, by the name of its control; 1 of others.
     pub weights: Vec<(String, f64)>,
     /// Where a step changes commands by no more than this share of them, it ends.
     pub tolerance: f64,
     pub iterations: usize,
+}
+
+/// How a motion is sought.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// All commands of all periods at once.
+    Spacetime,
+    /// From the end back, with gains.
+    LinearQuadratic {
+        costs: Vec<Cost>,
+        /// How long it goes on at least [s]; to the last key where `None`.
+        duration: Option<f64>,
+    },
 }
 
 /// What a probe is to be at a time.
@@ -34,6 +54,17 @@ pub struct KeyState {
     pub time: f64,
     pub probe: Wanted,
     pub value: f64,
+    /// What the square of a miss costs; `None`: there is none.
+    pub weight: Option<f64>,
+}
+
+/// What a probe is to be near all the time.
+#[derive(Clone, Debug)]
+pub struct Cost {
+    pub probe: Wanted,
+    pub value: f64,
+    /// What the square of its difference costs in a second.
+    pub weight: f64,
 }
 
 /// What was found.
@@ -43,7 +74,9 @@ pub struct FoundMotion {
     pub commands: Vec<(String, Vec<f64>)>,
     /// [s]
     pub period: f64,
-    /// `Σ w u² h` [N² s].
+    /// Of each control, what it makes of numbers of the state; none of spacetime constraints.
+    pub gains: Vec<Gain>,
+    /// `Σ w u² h` [N² s], and what else costs.
     pub cost: f64,
     /// What each key came to.
     pub reached: Vec<f64>,
@@ -53,8 +86,26 @@ pub struct FoundMotion {
     pub ending: Ending,
 }
 
+/// A column of gains, `u = u_n − K_n (S − S_n)`.
+#[derive(Clone, Debug)]
+pub struct Gain {
+    /// `BODY.CONTROL`
+    pub control: String,
+    /// `BODY[MASS].x` of a position, `BODY[MASS].v.x` of a velocity.
+    pub number: String,
+    pub is_velocity: bool,
+    /// Period by period, and at the end [m, m/s].
+    pub planned: Vec<f64>,
+    /// Period by period [N/m, N s/m].
+    pub gains: Vec<f64>,
+}
+
 const KEYS: &[&str] = &["kind", "keys", "weights", "tolerance", "iterations"];
+const LINEAR_QUADRATIC_KEYS: &[&str] =
+    &["kind", "keys", "weights", "tolerance", "iterations", "costs", "duration"];
 const KEY_KEYS: &[&str] = &["time", "probe", "value"];
+const WEIGHTED_KEY_KEYS: &[&str] = &["time", "probe", "value", "weight"];
+const COST_KEYS: &[&str] = &["probe", "value", "weight"];
 /// Coordinates of a scene that is planned for, positions and velocities, at most: a period is stepped four times for each.
 const MOST_COORDINATES: usize = 600;
 /// Commands in all, at most.
@@ -75,16 +126,38 @@ impl Motion {
         let Value::Table(table) = value else {
             return Err(SweepError::value("plan", value.to_string(), "a table"));
         };
-        refuse_unknown("plan.", table, KEYS)?;
         let found = |key: &str| table.get(key).map_or("missing".to_owned(), Value::to_string);
-        if table.get("kind").and_then(Value::as_str) != Some("spacetime") {
-            return Err(SweepError::value("plan.kind", found("kind"), "\"spacetime\""));
-        }
-        let keys = match table.get("keys") {
-            Some(Value::Array(keys)) if !keys.is_empty() => keys,
-            _ => return Err(SweepError::value("plan.keys", found("keys"), "tables `[[plan.keys]]`")),
+        let kind = match table.get("kind").and_then(Value::as_str) {
+            Some("spacetime") => {
+                refuse_unknown("plan.", table, KEYS)?;
+                Kind::Spacetime
+            }
+            Some("linear_quadratic") => {
+                refuse_unknown("plan.", table, LINEAR_QUADRATIC_KEYS)?;
+                Kind::linear_quadratic(table)?
+            }
+            _ => {
+                let expected = "\"spacetime\" or \"linear_quadratic\"";
+                return Err(SweepError::value("plan.kind", found("kind"), expected));
+            }
         };
-        let keys = keys.iter().enumerate().map(|(index, key)| KeyState::read(index, key));
+        let keys = match table.get("keys") {
+            Some(Value::Array(keys)) if !keys.is_empty() => keys.as_slice(),
+            None if matches!(&kind, Kind::LinearQuadratic { costs, duration: Some(_) } if !costs.is_empty()) => {
+                &[]
+            }
+            _ => {
+                let expected = match kind {
+                    Kind::Spacetime => "tables `[[plan.keys]]`",
+                    Kind::LinearQuadratic { .. } => {
+                        "tables `[[plan.keys]]`, or `[[plan.costs]]` and a `duration`"
+                    }
+                };
+                return Err(SweepError::value("plan.keys", found("keys"), expected));
+            }
+        };
+        let keys = keys.iter().enumerate().map(|(index, key)| KeyState::read(&kind, index, key));
+        let keys = keys.collect::<Result<_, _>>()?;
         let tolerance = match table.get("tolerance") {
             None => 1e-6,
             Some(value) => {
@@ -111,7 +184,7 @@ impl Motion {
                 return Err(SweepError::value("plan.weights", found("weights"), "a table of controls"));
             }
         };
-        Ok(Self { keys: keys.collect::<Result<_, _>>()?, weights, tolerance, iterations })
+        Ok(Self { kind, keys, weights, tolerance, iterations })
     }
 }
 
@@ -122,26 +195,94 @@ fn weight((name, value): (&String, &Value)) -> Result<(String, f64), SweepError>
     Ok((name.clone(), weight))
 }
 
-impl KeyState {
-    fn read(index: usize, value: &Value) -> Result<Self, SweepError> {
-        let place = format!("plan.keys[{index}]");
-        let empty = Table::new();
-        let table = value.as_table().unwrap_or(&empty);
-        refuse_unknown(&format!("{place}."), table, KEY_KEYS)?;
-        let fault = |key: &str, expected: &str| {
-            let found = table.get(key).map_or("missing".to_owned(), Value::to_string);
-            SweepError::value(format!("{place}.{key}"), found, expected)
+impl Kind {
+    fn linear_quadratic(table: &Table) -> Result<Self, SweepError> {
+        let duration = match table.get("duration") {
+            None => None,
+            Some(value) => {
+                let seconds = as_number(value).filter(|seconds| *seconds > 0.0 && seconds.is_finite());
+                Some(seconds.ok_or_else(|| {
+                    SweepError::value("plan.duration", value.to_string(), "seconds above 0")
+                })?)
+            }
         };
-        let number = |key: &str| table.get(key).and_then(as_number).filter(|number| number.is_finite());
-        let probe = table.get("probe").and_then(Value::as_str);
-        let probe =
-            probe.ok_or_else(|| fault("probe", "a probe of the scene, with .x, .y or .z of a vector"))?;
+        let costs = match table.get("costs") {
+            None => &[],
+            Some(Value::Array(costs)) => costs.as_slice(),
+            Some(value) => {
+                return Err(SweepError::value("plan.costs", value.to_string(), "tables `[[plan.costs]]`"));
+            }
+        };
+        let costs = costs.iter().enumerate().map(|(index, cost)| Cost::read(index, cost));
+        Ok(Self::LinearQuadratic { costs: costs.collect::<Result<_, _>>()?, duration })
+    }
+}
+
+/// A table of a list, with its place in messages.
+struct Entry<'a> {
+    place: String,
+    table: Option<&'a Table>,
+}
+
+impl<'a> Entry<'a> {
+    fn read(place: String, value: &'a Value, keys: &[&str]) -> Result<Self, SweepError> {
+        let table = value.as_table();
+        if let Some(table) = table {
+            refuse_unknown(&format!("{place}."), table, keys)?;
+        }
+        Ok(Self { place, table })
+    }
+
+    fn get(&self, key: &str) -> Option<&'a Value> {
+        self.table.and_then(|table| table.get(key))
+    }
+
+    fn fault(&self, key: &str, expected: &str) -> SweepError {
+        let found = self.get(key).map_or("missing".to_owned(), Value::to_string);
+        SweepError::value(format!("{}.{key}", self.place), found, expected)
+    }
+
+    fn number(&self, key: &str) -> Option<f64> {
+        self.get(key).and_then(as_number).filter(|number| number.is_finite())
+    }
+
+    fn probe(&self, key: &'static str) -> Result<Wanted, SweepError> {
+        let probe = self.get("probe").and_then(Value::as_str);
+        let expected = "a probe of the scene, with .x, .y or .z of a vector";
+        Ok(Wanted::read(key, probe.ok_or_else(|| self.fault("probe", expected))?))
+    }
+
+    fn value(&self) -> Result<f64, SweepError> {
+        self.number("value").ok_or_else(|| self.fault("value", "a finite number"))
+    }
+
+    fn weight(&self) -> Result<f64, SweepError> {
+        let weight = self.number("weight").filter(|weight| *weight > 0.0);
+        weight.ok_or_else(|| self.fault("weight", "a number above 0"))
+    }
+}
+
+impl Cost {
+    fn read(index: usize, value: &Value) -> Result<Self, SweepError> {
+        let entry = Entry::read(format!("plan.costs[{index}]"), value, COST_KEYS)?;
+        Ok(Self { probe: entry.probe("plan.costs.probe")?, value: entry.value()?, weight: entry.weight()? })
+    }
+}
+
+impl KeyState {
+    fn read(kind: &Kind, index: usize, value: &Value) -> Result<Self, SweepError> {
+        let keys = match kind {
+            Kind::Spacetime => KEY_KEYS,
+            Kind::LinearQuadratic { .. } => WEIGHTED_KEY_KEYS,
+        };
+        let entry = Entry::read(format!("plan.keys[{index}]"), value, keys)?;
+        let probe = entry.probe("plan.keys.probe")?;
+        let time = entry.number("time").filter(|time| *time > 0.0);
         Ok(Self {
-            time: number("time")
-                .filter(|time| *time > 0.0)
-                .ok_or_else(|| fault("time", "seconds above 0"))?,
-            probe: Wanted::read("plan.keys.probe", probe),
-            value: number("value").ok_or_else(|| fault("value", "a finite number"))?,
+            probe,
+            time: time.ok_or_else(|| entry.fault("time", "seconds above 0"))?,
+            value: entry.value()?,
+            weight: entry.get("weight").map(|_| entry.weight()).transpose()?,
         })
     }
 }
@@ -159,12 +300,17 @@ impl Planner<'_> {
     /// # Errors
     /// The scene cannot be read or stepped, has nothing to command, or cannot reach a key.
     pub fn run(&self, watch: &mut dyn FnMut(usize, f64, f64)) -> Result<Option<FoundMotion>, SweepError> {
-        let found = self.search(watch);
+        let found = match &self.motion.kind {
+            Kind::Spacetime => self.search(watch),
+            Kind::LinearQuadratic { costs, duration } => {
+                linear_quadratic::search(self, costs, *duration, watch)
+            }
+        };
         if self.stop.is_wished() { Ok(None) } else { found.map(Some) }
     }
 
     fn search(&self, watch: &mut dyn FnMut(usize, f64, f64)) -> Result<FoundMotion, SweepError> {
-        let mut course = Course::start(self.study, self.motion, self.stop.clone())?;
+        let mut course = Course::start(self.study, self.motion, self.stop.clone(), None)?;
         let period = course.world.model().period;
         let mut now = course.follow(vec![0.0; course.periods * course.controls.len()])?;
         let (mut iterations, mut ending) = (0, Ending::OutOfIterations);
@@ -185,23 +331,8 @@ impl Planner<'_> {
             now = next;
             watch(iterations, course.cost(&now.commands) * period, now.greatest_miss(&course.values));
         }
-        course.refuse_what_is_cut(&now)?;
-        let count = course.controls.len();
-        let of = |index: usize| now.commands.iter().skip(index).step_by(count).copied().collect();
-        Ok(FoundMotion {
-            commands: course
-                .controls
-                .iter()
-                .enumerate()
-                .map(|(index, it)| (it.name.clone(), of(index)))
-                .collect(),
-            period,
-            cost: course.cost(&now.commands) * period,
-            reached: now.reached,
-            iterations,
-            steps: course.steps,
-            ending,
-        })
+        let cost = course.cost(&now.commands) * period;
+        course.found(now, (iterations, ending), cost, Vec::new())
     }
 }
 
@@ -210,17 +341,21 @@ struct Course {
     world: World,
     start: State,
     controls: Vec<PlannedControl>,
+    probes: Vec<ProbeInfo>,
     /// Of the commands of a period.
     weights: Vec<f64>,
     periods: usize,
     /// Of each key: the period that it is the end of, its probe, and which of its numbers.
-    keys: Vec<(usize, ProbeInfo, usize)>,
+    keys: Vec<(usize, Measured)>,
     /// Of each key.
     values: Vec<f64>,
     coordinates: Vec<Coordinate>,
     steps: usize,
     stop: Interruption,
 }
+
+/// A probe, and which of its numbers.
+type Measured = (ProbeInfo, usize);
 
 /// A number of the state that evolves.
 #[derive(Clone, Copy)]
@@ -268,7 +403,13 @@ impl Trajectory {
 }
 
 impl Course {
-    fn start(study: &Study, motion: &Motion, stop: Interruption) -> Result<Self, SweepError> {
+    /// A scene at its start, planned for up to the last key, and for `duration` [s] at least.
+    fn start(
+        study: &Study,
+        motion: &Motion,
+        stop: Interruption,
+        duration: Option<f64>,
+    ) -> Result<Self, SweepError> {
         let refuse =
             |message: String| SweepError::Scene { run: 0, settings: study.settings.join(", "), message };
         let (scene, controls) = souple_scene::read_file_to_plan(&study.scene, &study.settings)
@@ -285,21 +426,20 @@ impl Course {
             let known: Vec<&str> = controls.iter().map(|control| control.name.as_str()).collect();
             return Err(SweepError::value("plan.weights", name, format!("a control: {}", known.join(", "))));
         }
-        let mut keys = Vec::new();
-        for (index, key) in motion.keys.iter().enumerate() {
-            let periods = key.time / model.period;
+        let whole = |place: String, time: f64| {
+            let periods = time / model.period;
             if (periods - periods.round()).abs() > 1e-6 * periods || periods < 0.5 {
                 let expected = format!("a whole number of periods of {} s", model.period);
-                return Err(SweepError::value(
-                    format!("plan.keys[{index}].time"),
-                    key.time.to_string(),
-                    expected,
-                ));
+                return Err(SweepError::value(place, time.to_string(), expected));
             }
-            let (probe, number) = key.probe.among(&probes)?;
-            keys.push((periods.round() as usize, probe, number));
+            Ok(periods.round() as usize)
+        };
+        let mut keys = Vec::new();
+        for (index, key) in motion.keys.iter().enumerate() {
+            keys.push((whole(format!("plan.keys[{index}].time"), key.time)?, key.probe.among(&probes)?));
         }
-        let periods = keys.iter().map(|(period, ..)| *period).max().unwrap_or(0);
+        let last = duration.map(|time| whole("plan.duration".to_owned(), time)).transpose()?;
+        let periods = keys.iter().map(|(period, ..)| *period).chain(last).max().unwrap_or(0);
         if periods.saturating_mul(controls.len()) > MOST_COMMANDS {
             let found = format!("{} commands in {periods} periods", controls.len());
             return Err(SweepError::value("plan.keys", found, format!("at most {MOST_COMMANDS} in all")));
@@ -313,6 +453,7 @@ impl Course {
             start: state.clone(),
             world: model.start(state),
             controls,
+            probes,
             periods,
             keys,
             values: motion.keys.iter().map(|key| key.value).collect(),
@@ -337,11 +478,33 @@ impl Course {
         Ok(self.world.state().clone())
     }
 
-    fn measure(&mut self, key: usize, state: &State) -> Result<f64, SweepError> {
+    fn measure(&mut self, (probe, number): &Measured, state: &State) -> Result<f64, SweepError> {
         let failed = |message: String| SweepError::Failed { settings: "these commands".to_owned(), message };
         self.world.resume(state.clone()).map_err(|error| failed(error.to_string()))?;
-        let (_, probe, number) = &self.keys[key];
         Ok(probe.measure(&mut self.world).numbers()[*number])
+    }
+
+    /// What keys come to where these are the states between periods.
+    fn reached(&mut self, states: &[State]) -> Result<Vec<f64>, SweepError> {
+        let keys = self.keys.clone();
+        keys.iter().map(|(period, measured)| self.measure(measured, &states[*period])).collect()
+    }
+
+    /// `dy/dX`, by coordinates.
+    fn gradient(
+        &mut self,
+        measured: &Measured,
+        state: &State,
+        steps: [f64; 2],
+    ) -> Result<Vec<f64>, SweepError> {
+        let mut gradient = Vec::with_capacity(self.coordinates.len());
+        for coordinate in self.coordinates.clone() {
+            let by = steps[usize::from(coordinate.is_velocity)];
+            let ahead = self.measure(measured, &coordinate.moved(state, by))?;
+            let behind = self.measure(measured, &coordinate.moved(state, -by))?;
+            gradient.push((ahead - behind) / (2.0 * by));
+        }
+        Ok(gradient)
     }
 
     fn follow(&mut self, commands: Vec<f64>) -> Result<Trajectory, SweepError> {
@@ -351,10 +514,7 @@ impl Course {
             let next = self.step(states[period].clone(), &commands[period * count..(period + 1) * count])?;
             states.push(next);
         }
-        let mut reached = Vec::new();
-        for key in 0..self.keys.len() {
-            reached.push(self.measure(key, &states[self.keys[key].0])?);
-        }
+        let reached = self.reached(&states)?;
         Ok(Trajectory { commands, states, reached })
     }
 
@@ -386,6 +546,12 @@ impl Course {
         [size, speed, command].map(|scale| DIFFERENCE * scale)
     }
 
+    /// Keys that are the end of `period` periods, by their numbers.
+    fn keys_at(&self, period: usize) -> Vec<(usize, Measured)> {
+        let keys = self.keys.iter().enumerate().filter(|(_, (at, _))| *at == period);
+        keys.map(|(key, (_, measured))| (key, measured.clone())).collect()
+    }
+
     /// `∂y_k/∂u`, a row for each key.
     fn sensitivities(&mut self, now: &Trajectory) -> Result<Vec<Vec<f64>>, SweepError> {
         let [position, velocity, command] = self.differences(now);
@@ -395,15 +561,8 @@ impl Course {
         // of keys that are not before the period: dy/dX at its end
         let mut gradients: Vec<(usize, Vec<f64>)> = Vec::new();
         for period in (0..self.periods).rev() {
-            for key in (0..self.keys.len()).filter(|key| self.keys[*key].0 == period + 1).collect::<Vec<_>>()
-            {
-                let mut gradient = Vec::with_capacity(all.len());
-                for coordinate in &all {
-                    let by = step_of(coordinate);
-                    let ahead = self.measure(key, &coordinate.moved(&now.states[period + 1], by))?;
-                    let behind = self.measure(key, &coordinate.moved(&now.states[period + 1], -by))?;
-                    gradient.push((ahead - behind) / (2.0 * by));
-                }
+            for (key, measured) in self.keys_at(period + 1) {
+                let gradient = self.gradient(&measured, &now.states[period + 1], [position, velocity])?;
                 gradients.push((key, gradient));
             }
             let (state, commands) =
@@ -451,12 +610,7 @@ impl Course {
             // what is no number is not told either
             let is_told = size > ALIKE * length(row);
             if !is_told {
-                let found = "what no command changes, or what other keys say already";
-                return Err(SweepError::value(
-                    format!("plan.keys[{key}]"),
-                    found,
-                    "keys that commands reach each by itself, with at least as many commands as keys",
-                ));
+                return Err(Self::key_that_is_not_reached(key));
             }
             basis.push(left.iter().map(|entry| entry / size).collect());
         }
@@ -478,6 +632,14 @@ impl Course {
             sum / self.weights[index % self.weights.len()]
         };
         Ok(Least { commands: (0..now.commands.len()).map(command).collect(), multipliers })
+    }
+
+    fn key_that_is_not_reached(key: usize) -> SweepError {
+        SweepError::value(
+            format!("plan.keys[{key}]"),
+            "what no command changes, or what other keys say already",
+            "keys that commands reach each by itself, with at least as many commands as keys",
+        )
     }
 
     /// As far along a change as `Σ w u² + Σ ρ |y* − y|` falls, `ρ` being twice what a key is worth; `None` where it falls nowhere.
@@ -513,6 +675,30 @@ impl Course {
             }
         }
         Ok(None)
+    }
+
+    /// What is handed back of a motion.
+    fn found(
+        &self,
+        now: Trajectory,
+        (iterations, ending): (usize, Ending),
+        cost: f64,
+        gains: Vec<Gain>,
+    ) -> Result<FoundMotion, SweepError> {
+        self.refuse_what_is_cut(&now)?;
+        let count = self.controls.len();
+        let of = |index: usize| now.commands.iter().skip(index).step_by(count).copied().collect();
+        let controls = self.controls.iter().enumerate();
+        Ok(FoundMotion {
+            commands: controls.map(|(index, control)| (control.name.clone(), of(index))).collect(),
+            period: self.world.model().period,
+            gains,
+            cost,
+            reached: now.reached,
+            iterations,
+            steps: self.steps,
+            ending,
+        })
     }
 
     /// Commands that an actuator would cut off make another motion.
@@ -562,13 +748,28 @@ fn coordinates(state: &State) -> Result<Vec<Coordinate>, SweepError> {
 }
 
 impl FoundMotion {
-    /// What a scene reads: a row for each period with the commands that act in it, and one with none from the end on.
+    /// What a scene reads: a row for each period with the commands that act in it, with what numbers of the state that have gains are planned
+    /// to be then and those gains; and a row with no command and no gain from the end on.
     pub fn columns(&self) -> Vec<Column> {
         let periods = self.commands.first().map_or(0, |(_, commands)| commands.len());
-        let times = (0..=periods).map(|period| period as f64 * self.period).collect();
-        let of_controls = self.commands.iter().map(|(name, commands)| {
-            Column::new(format!("{name} [N]"), commands.iter().copied().chain([0.0]).collect())
-        });
-        [Column::new("time [s]", times)].into_iter().chain(of_controls).collect()
+        let mut columns =
+            vec![Column::new("time [s]", (0..=periods).map(|period| period as f64 * self.period).collect())];
+        let and_none = |values: &[f64]| values.iter().copied().chain([0.0]).collect();
+        for (name, commands) in &self.commands {
+            columns.push(Column::new(format!("{name} [N]"), and_none(commands)));
+        }
+        for gain in &self.gains {
+            let name = format!("{} [{}]", gain.number, if gain.is_velocity { "m/s" } else { "m" });
+            // several controls may have gains of one number
+            if columns.iter().all(|column| column.name != name) {
+                columns.push(Column::new(name, gain.planned.clone()));
+            }
+        }
+        for gain in &self.gains {
+            let unit = if gain.is_velocity { "N s/m" } else { "N/m" };
+            let name = format!("{} / {} [{unit}]", gain.control, gain.number);
+            columns.push(Column::new(name, and_none(&gain.gains)));
+        }
+        columns
     }
 }

@@ -2,6 +2,7 @@
 //! that the crate stands on.
 
 mod fit;
+mod linear_quadratic;
 mod motion;
 mod mutations;
 mod study;

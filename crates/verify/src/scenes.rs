@@ -123,6 +123,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("pumped_block", include_str!("../../../scenes/pumped_block/scene.toml")),
     ("puppet", include_str!("../../../scenes/puppet/scene.toml")),
     ("rattle", include_str!("../../../scenes/rattle/scene.toml")),
+    ("regulated_cart", include_str!("../../../scenes/regulated_cart/scene.toml")),
     ("rheometer", include_str!("../../../scenes/rheometer/scene.toml")),
     ("rigid_contacts", include_str!("../../../scenes/rigid_contacts/scene.toml")),
     ("rigid_core", include_str!("../../../scenes/rigid_core/scene.toml")),
@@ -159,6 +160,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("sphere_under_tension", include_str!("../../../scenes/sphere_under_tension/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
+    ("steered_cart", include_str!("../../../scenes/steered_cart/scene.toml")),
     ("strangled_clay", include_str!("../../../scenes/strangled_clay/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
     ("string", include_str!("../../../scenes/string/scene.toml")),
@@ -192,6 +194,8 @@ pub const SCENES: &[(&str, &str)] = &[
 const PLANS: &[(&str, &str, &str)] = &[
     ("crane", "motion.plan.csv", include_str!("../../../scenes/crane/motion.plan.csv")),
     ("planned_cart", "motion.plan.csv", include_str!("../../../scenes/planned_cart/motion.plan.csv")),
+    ("regulated_cart", "motion.plan.csv", include_str!("../../../scenes/regulated_cart/motion.plan.csv")),
+    ("steered_cart", "motion.plan.csv", include_str!("../../../scenes/steered_cart/motion.plan.csv")),
 ];
 
 /// Names and texts of the files that a scene names.

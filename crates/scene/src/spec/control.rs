@@ -58,6 +58,11 @@ pub(super) static CONTROL: Keys = Keys::new(
             Shape::Text,
             "or a file of the commands of an actuator, as `souple sweep` plans them, relative to the scene file",
         ),
+        Key::new(
+            "feedback",
+            Shape::Boolean,
+            "of `plan`: whether the gains of the file, where it has some, answer to deviations from the planned motion; they do where left out",
+        ),
         Key::new("inputs", Shape::Named(&INPUT), "what it reads, by the names that it uses"),
     ],
 );
@@ -97,7 +102,17 @@ pub enum Drives {
     Plan {
         file: String,
         site: Site,
+        feedback: Feedback,
     },
+}
+
+/// What is made of the gains of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feedback {
+    /// They answer to deviations from the planned motion.
+    AsPlanned,
+    /// They are left aside: commands alone.
+    Without,
 }
 
 /// What a control reads.
@@ -140,7 +155,9 @@ impl ControlSpec {
                 .map_err(|error| wrong("value", &error))
                 .ok(),
             ["plan"] if is_of_actuator => {
-                Some(Drives::Plan { file: reader.text("plan"), site: reader.site_of("plan") })
+                let is_without = reader.has("feedback") && !reader.boolean("feedback");
+                let feedback = if is_without { Feedback::Without } else { Feedback::AsPlanned };
+                Some(Drives::Plan { file: reader.text("plan"), site: reader.site_of("plan"), feedback })
             }
             _ if is_of_actuator => {
                 refuse("actuator", format!("control `{name}` commands an actuator"), "value or plan, alone");
@@ -163,6 +180,13 @@ impl ControlSpec {
                 None
             }
         };
+        if reader.has("feedback") && !reader.has("plan") {
+            refuse(
+                "feedback",
+                format!("control `{name}` has no plan"),
+                "`plan` beside it, whose gains it is about",
+            );
+        }
         let inputs = inputs.iter().map(|(name, input)| InputSpec::read(name, input)).collect();
         let written = reader.written(&["links", "crowds", "actuator"]);
         let of = match written[..] {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Ending, Fit, Motion, Planner, Progress, Search, Study, SweepError, Unknown, Workers,
+    Database, Ending, Fit, Kind, Motion, Planner, Progress, Search, Study, SweepError, Unknown, Workers,
     fingerprints, graphs, sweep as make_runs, table_of,
 };
 use souple_table::counted;
@@ -238,6 +238,7 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
             "title": study.title,
             "scene": study.scene.display().to_string(),
             "controls": found.commands.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+            "gains": found.gains.iter().map(|gain| &gain.number).collect::<Vec<_>>(),
             "cost": found.cost,
             "keys": keys.collect::<Vec<_>>(),
             "iterations": found.iterations,
@@ -251,8 +252,9 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
             print_line(format_args!("{probe} at {} s: {reached:.9e}, for {value:.9e}", key.time));
         }
         print_line(format_args!(
-            "cost {:.9e} N² s, {}, {} stepped",
+            "cost {:.9e}{}, {}, {} stepped",
             found.cost,
+            if matches!(motion.kind, Kind::Spacetime) { " N² s" } else { "" },
             counted(found.iterations as u64, "iteration"),
             counted(found.steps as u64, "period")
         ));

@@ -11,7 +11,8 @@ use souple_models::network::{
 
 use super::super::Draft;
 use super::super::bodies::Placed;
-use super::{crowd_force, plan};
+use super::crowd_force;
+use super::plan::{self, Plan};
 use crate::diagnostic::Code;
 use crate::keys::one_of;
 use crate::reader::Chosen;
@@ -206,9 +207,10 @@ fn control(
         Drives::Command(value) => {
             (Rule::Command { value: value.clone(), largest: network.largest(spec.of.name()) }, 0.0)
         }
-        Drives::Plan { file, site } => {
-            let commands = plan::read(draft, site, file, &format!("{}.{}", body.spec.name, spec.name))?;
-            (Rule::Plan { commands, largest: network.largest(spec.of.name()) }, 0.0)
+        Drives::Plan { file, site, feedback } => {
+            let name = format!("{}.{}", body.spec.name, spec.name);
+            let plan = plan::read(draft, body, (site, file), &name, *feedback)?;
+            (Rule::Plan { plan, largest: network.largest(spec.of.name()) }, 0.0)
         }
     };
     let name = format!("{}.{}", body.spec.name, spec.name);
@@ -243,9 +245,9 @@ enum Rule {
         value: Formula,
         largest: f64,
     },
-    /// The same, of each period; that of the last goes on.
+    /// The same, of each period.
     Plan {
-        commands: Vec<f64>,
+        plan: Plan,
         largest: f64,
     },
 }
@@ -312,10 +314,10 @@ impl Written {
         }
         match &self.rule {
             Rule::Parameter(value) => value.evaluate(&values),
-            Rule::Plan { commands, largest } => {
+            Rule::Plan { plan, largest } => {
                 // without a period at the start
                 let number = if period > 0.0 { (time / period).round() as usize } else { 0 };
-                commands[number.min(commands.len() - 1)].clamp(-largest, *largest)
+                plan.command(number, positions, velocities).clamp(-largest, *largest)
             }
             Rule::Command { value, largest } => value.evaluate(&values).clamp(-largest, *largest),
             Rule::Connection { holds, ramp } => {

@@ -1,15 +1,77 @@
 //! Plans of commands: files of `souple sweep`, a row for each period.
 
+use std::ops::Range;
+
+use souple_math::Vec3;
+
 use super::super::Draft;
+use super::super::bodies::Placed;
 use crate::diagnostic::{Code, Site};
+use crate::spec::control::Feedback;
 
 /// How far a date may be from the start of its period, in periods: what decimals of a file do.
 const OFF: f64 = 1e-6;
 
-/// The commands of a control, period by period [N]; `None` where the file was refused.
+/// Commands of a control, period by period, and what it makes of deviations from the planned motion: `u_n − K_n (S − S_n)`.
+pub struct Plan {
+    /// [N]
+    commands: Vec<f64>,
+    /// A gain for each number of the state that there is one for.
+    gains: Vec<Gain>,
+}
+
+/// What a control makes of one number of the state.
+struct Gain {
+    /// Row of the system.
+    row: usize,
+    component: usize,
+    is_velocity: bool,
+    /// `S_n` and `K_n`, period by period.
+    planned: Vec<[f64; 2]>,
+}
+
+impl Plan {
+    /// The command of a period; that of the last goes on.
+    pub fn command(&self, period: usize, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
+        let period = period.min(self.commands.len() - 1);
+        let answer: f64 = self.gains.iter().map(|gain| gain.answer(period, positions, velocities)).sum();
+        self.commands[period] - answer
+    }
+}
+
+impl Gain {
+    fn answer(&self, period: usize, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
+        let [planned, gain] = self.planned[period];
+        let now = if self.is_velocity { velocities[self.row] } else { positions[self.row] };
+        gain * (now[self.component] - planned)
+    }
+}
+
+/// How numbers of the state of masses are called in the first line of a plan: `BODY[3].x`, `BODY[3].v.x`.
+const NUMBERS: [(&str, bool, usize); 6] =
+    [("x", false, 0), ("y", false, 1), ("z", false, 2), ("v.x", true, 0), ("v.y", true, 1), ("v.z", true, 2)];
+
+/// The row, the component, and whether it is of a velocity, of a number that belongs to the masses of a body.
+fn number_of(body: &str, rows: &Range<usize>, name: &str) -> Option<(usize, usize, bool)> {
+    let (mass, number) = name.strip_prefix(body)?.strip_prefix('[')?.split_once("].")?;
+    let row = rows.start + mass.parse::<usize>().ok()?;
+    let (_, is_velocity, component) = NUMBERS.into_iter().find(|(known, ..)| *known == number)?;
+    rows.contains(&row).then_some((row, component, is_velocity))
+}
+
+/// The plan of a control; `None` where the file was refused.
 ///
-/// The first column is the time at which periods begin [s]; that of the control has its name, `BODY.CONTROL`, before its unit.
-pub fn read(draft: &Draft, site: &Site, file: &str, control: &str) -> Option<Vec<f64>> {
+/// The first column is the time at which periods begin [s]; that of the control has its name, `BODY.CONTROL`, before its unit. Columns
+/// `BODY.CONTROL / NUMBER` are gains, and `NUMBER` has a column with what it is planned to be. Gains are left aside where there is no
+/// `feedback`.
+pub fn read(
+    draft: &Draft,
+    body: &Placed,
+    (site, file): (&Site, &str),
+    control: &str,
+    feedback: Feedback,
+) -> Option<Plan> {
+    let (body, rows) = (body.spec.name.as_str(), &body.rows);
     let refuse = |code: Code, message: String, expected: &str| {
         draft.log.add(code, site, format!("`{file}`: {message}"), expected);
         None
@@ -24,9 +86,10 @@ pub fn read(draft: &Draft, site: &Site, file: &str, control: &str) -> Option<Vec
     };
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let head = lines.next().map_or("", |(_, line)| line);
-    let names =
-        head.split(',').map(|cell| cell.trim().trim_end_matches(']').split(" [").next().unwrap_or(""));
-    let Some(column) = names.skip(1).position(|name| name == control) else {
+    let names: Vec<&str> =
+        head.split(',').map(|cell| cell.trim().split(" [").next().unwrap_or_default()).collect();
+    let column_of = |name: &str| names.iter().skip(1).position(|known| *known == name).map(|at| at + 1);
+    let Some(column) = column_of(control) else {
         let message = format!("no column is of `{control}`");
         return refuse(
             Code::UnknownName,
@@ -34,7 +97,25 @@ pub fn read(draft: &Draft, site: &Site, file: &str, control: &str) -> Option<Vec
             "columns `time [s]` and `BODY.CONTROL [N]`, named in the first line",
         );
     };
-    let (period, count) = (draft.spec.world.period, head.split(',').count());
+    // columns of what is planned and of the gain, and what there is of each
+    let mut gains: Vec<([usize; 2], Gain)> = Vec::new();
+    for (at, name) in names.iter().enumerate().filter(|_| feedback == Feedback::AsPlanned) {
+        let Some(number) = name.strip_prefix(control).and_then(|rest| rest.strip_prefix(" / ")) else {
+            continue;
+        };
+        let (Some(planned), Some((row, component, is_velocity))) =
+            (column_of(number), number_of(body, rows, number))
+        else {
+            let expected = format!(
+                "positions and velocities of masses of the network, `{body}[0].x` to `{body}[{}].v.z`, with a column of what each is \
+                 planned to be",
+                rows.len().saturating_sub(1)
+            );
+            return refuse(Code::UnknownName, format!("a gain is of `{number}`"), &expected);
+        };
+        gains.push(([planned, at], Gain { row, component, is_velocity, planned: Vec::new() }));
+    }
+    let (period, count) = (draft.spec.world.period, names.len());
     let mut commands = Vec::new();
     for (number, line) in lines {
         let cells: Vec<f64> = line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect();
@@ -52,10 +133,11 @@ pub fn read(draft: &Draft, site: &Site, file: &str, control: &str) -> Option<Vec
                 format!("{} s: a row for each period of {period} s", commands.len() as f64 * period);
             return refuse(Code::Conflict, message, &expected);
         }
-        commands.push(cells[column + 1]);
+        commands.push(cells[column]);
+        gains.iter_mut().for_each(|(columns, gain)| gain.planned.push(columns.map(|column| cells[column])));
     }
     if commands.is_empty() {
         return refuse(Code::EmptyRegion, "it has no rows".to_owned(), "a row for each period");
     }
-    Some(commands)
+    Some(Plan { commands, gains: gains.into_iter().map(|(_, gain)| gain).collect() })
 }
