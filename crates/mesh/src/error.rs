@@ -53,6 +53,8 @@ pub enum MeshError {
          not known what it is a hollow of; expected hollows that cross nothing", .crossing[0], .crossing[1]
     )]
     CrossedHollow { crossing: [u32; 2] },
+    #[error("{list} has a block of {kind}, which is not split; expected {expected} only")]
+    NotSplit { list: &'static str, kind: ElementKind, expected: ElementKind },
     #[error("`{name}` is {value}; expected {expected}")]
     Parameter { name: &'static str, value: String, expected: String },
     #[error("{requested} cells were asked for; expected at most {limit}")]

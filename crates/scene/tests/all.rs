@@ -22,4 +22,5 @@ mod quantities;
 mod rigid_contacts;
 mod scenes;
 mod skins;
+mod split;
 mod surfaces;

@@ -23,6 +23,8 @@ pub enum Reading {
     FreeFrequency(usize),
     /// What an operator makes of the mesh of the first body, as `souple mesh operators` prints it.
     Operator { operator: &'static str, number: OperatorNumber },
+    /// The least scaled Jacobian of the mesh of the first body, as `souple mesh quality` prints it.
+    ScaledJacobian,
     /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
     HighestFrequency,
     /// The condition of the moments that moving least squares over the places of a body's frames would invert, as
@@ -132,6 +134,7 @@ impl Reading {
             Self::NaturalFrequency(number) => format!("natural frequency {number}"),
             Self::FreeFrequency(number) => format!("free frequency {number}"),
             Self::Operator { operator, number } => format!("{number:?} of {operator}").to_lowercase(),
+            Self::ScaledJacobian => "smallest_scaled_jacobian".to_owned(),
             Self::HighestFrequency => "highest frequency".to_owned(),
             Self::MomentCondition(body) => format!("moment_condition of {body}"),
             Self::StepMilliseconds => "wall_seconds / steps".to_owned(),
@@ -150,6 +153,7 @@ impl Reading {
             Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
             Self::FreeFrequency(number) => ("modes", format!(" --near 1 --count {number}")),
             Self::Operator { .. } => ("mesh operators", " --json".to_owned()),
+            Self::ScaledJacobian => ("mesh quality", " --json".to_owned()),
             Self::HighestFrequency | Self::MomentCondition(_) => ("check", " --json".to_owned()),
             Self::StepMilliseconds => ("run", " --threads 1 --json".to_owned()),
             Self::Ratio { .. } | Self::NewtonIterations | Self::Steps => ("run", " --json".to_owned()),
@@ -192,6 +196,11 @@ impl Reading {
                 Ok((number.of(quality.ok_or_else(|| format!("there is no operator `{operator}`"))?), ""))
             }
             Self::Derived(_) => unreachable!("counted above"),
+            Self::ScaledJacobian => {
+                let mesh = &scene.bodies.first().ok_or("the scene has no body")?.mesh;
+                let shapes = mesh.quality().into_iter().map(|cell| cell.scaled_jacobian);
+                Ok((shapes.fold(f64::INFINITY, f64::min), ""))
+            }
             Self::HighestFrequency => {
                 let mut world = scene.model.start(scene.state);
                 let forecast = world.with_system(0, |system, state, around, ws| {

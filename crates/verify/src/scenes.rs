@@ -161,6 +161,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("sphere_under_tension", include_str!("../../../scenes/sphere_under_tension/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
     ("steered_cart", include_str!("../../../scenes/steered_cart/scene.toml")),
+    ("split_block", include_str!("../../../scenes/split_block/scene.toml")),
     ("strangled_clay", include_str!("../../../scenes/strangled_clay/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
     ("string", include_str!("../../../scenes/string/scene.toml")),

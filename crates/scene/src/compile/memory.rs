@@ -79,6 +79,7 @@ pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
         let (bytes, size) = match mesh {
             MeshSpec::Generated(chosen) => {
                 let size = (chosen.entry.build.size)(&chosen.values).ok()?;
+                let size = body.split.as_ref().map_or(size, |split| split.least_size(size));
                 (bytes_of(size, CELL, matrix_of(spec, &body.system)), counts(size))
             }
             // no more is known of a file than that it is read as a whole

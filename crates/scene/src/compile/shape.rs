@@ -9,6 +9,7 @@ use super::{Draft, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::Body;
 use crate::spec::mesh::MeshSpec;
+use crate::spec::split::SplitSpec;
 
 /// The rest shape of a body.
 pub struct Shape {
@@ -24,9 +25,36 @@ const FLAT: f64 = 1e-6;
 /// Least size of a body, as a part of its distance from the origin: positions keep a millionth of it then.
 const NEAREST: f64 = 1e-10;
 
-/// The mesh of a body; `None` where it was refused.
+/// The mesh of a body, split where that is asked for; `None` where it was refused.
 pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
-    build_of(body, body.mesh.as_ref()?, draft)
+    let shape = build_of(body, body.mesh.as_ref()?, draft)?;
+    match &body.split {
+        Some(split) => split_shape(shape, split, draft),
+        None => Some(shape),
+    }
+}
+
+/// A shape of smaller tetrahedra; new points have the numbers after those of its file.
+fn split_shape(shape: Shape, split: &SplitSpec, draft: &Draft) -> Option<Shape> {
+    let Shape { mut mesh, mut point_numbers, warnings } = shape;
+    for _ in 0..split.times {
+        mesh = match mesh.split(split.by) {
+            Ok(mesh) => mesh,
+            Err(error @ MeshError::TooManyCells { .. }) => {
+                draft.log.add(Code::TooLarge, &split.site, error.to_string(), "fewer `times`");
+                return None;
+            }
+            Err(error) => {
+                let (message, accepted) = error.in_two();
+                let accepted = accepted.as_deref().unwrap_or("a mesh of tetrahedra");
+                draft.log.add(Code::Mesh, &split.site, message, accepted);
+                return None;
+            }
+        };
+    }
+    let next = point_numbers.last().map_or(0, |last| last + 1);
+    point_numbers.extend((next..).take(mesh.points.len() - point_numbers.len()));
+    Some(Shape { mesh, point_numbers, warnings })
 }
 
 /// One of the meshes of a body; `None` where it was refused.

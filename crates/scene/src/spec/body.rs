@@ -21,6 +21,7 @@ use super::octree::{OCTREE, OctreeSpec};
 use super::polynomial::{POLYNOMIAL, PolynomialSpec};
 use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
+use super::split::{SPLIT, SplitSpec};
 use super::start::{START, StartSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, NOWHERE, Need, Shape, outlines};
@@ -136,6 +137,7 @@ pub(crate) static BODY: Keys = Keys::new(
     "a soft solid",
     &[
         Key { need: Need::Required, ..Key::new("mesh", Shape::Entry(MESH), "its shape at rest") },
+        Key::new("split", Shape::Table(&SPLIT), "splits the tetrahedra of `mesh` into smaller ones"),
         Key { need: Need::Required, ..Key::new("material", Shape::Entry(MATERIAL), "its law") },
         Key::new(
             "section",
@@ -228,6 +230,8 @@ pub(crate) static BODY: Keys = Keys::new(
 pub struct Body {
     pub name: String,
     pub mesh: Option<MeshSpec>,
+    /// Smaller tetrahedra in the place of those of its mesh.
+    pub split: Option<SplitSpec>,
     pub material: Option<Chosen<materials::Build>>,
     /// What its cells are sections of; volumes where left out.
     pub section: Option<Chosen<BuildSection>>,
@@ -452,6 +456,7 @@ impl Body {
         Self {
             name,
             mesh: MeshSpec::read(reader),
+            split: reader.table("split").map(|table| SplitSpec::read(&table)),
             material_fields: material_fields.collect(),
             material,
             section: reader.entry("section", &SECTIONS),

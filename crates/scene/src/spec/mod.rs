@@ -27,6 +27,7 @@ pub mod region;
 mod rules;
 pub mod skin;
 pub mod sound;
+pub mod split;
 pub mod start;
 pub mod units;
 pub mod view;

@@ -441,6 +441,7 @@ impl Network {
         Body {
             name,
             mesh: None,
+            split: None,
             material: None,
             section: None,
             bending: None,

@@ -9,6 +9,7 @@ mod summary;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::{Value as Json, json};
 use souple_io::{Dataset, Output};
@@ -17,7 +18,7 @@ use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
 
-use super::{End, Refusal, print_json, print_line, print_note};
+use super::{End, Refusal, print_json, print_line, print_note, scene_path};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -91,7 +92,11 @@ enum Action {
     },
     /// Measures volume, quality and conformity, of surfaces whether they are closed, and says what is wrong
     Quality {
+        /// A mesh file, or a scene, of which the first body is taken
         input: PathBuf,
+        /// Changes a value of the scene; may be repeated
+        #[arg(long = "set", value_name = "PATH=VALUE")]
+        settings: Vec<String>,
         #[arg(long)]
         json: bool,
     },
@@ -171,7 +176,11 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
                 Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
             write(&out, format, &output, notes, json)
         }
-        Action::Quality { input, json } => {
+        Action::Quality { input, settings, json } => {
+            if let Some(mesh) = first_body(&input, &settings)? {
+                report(&input, &mesh, &[], json);
+                return Ok(End::Done);
+            }
             let (mut mesh, mut notes) = read(&input)?;
             notes.extend(mesh.bounds_of_cells().doubt());
             // cells, or nothing at all, are validated
@@ -185,7 +194,7 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             Ok(End::Done)
         }
         Action::Operators { input, parameters, settings, json } => {
-            let found = match operators::first_body(&input, &settings)? {
+            let found = match first_body(&input, &settings)? {
                 Some(mesh) => operators::of(&mesh, &parameters)?,
                 None => {
                     let (mut mesh, _) = read(&input)?;
@@ -201,6 +210,20 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             Ok(End::Done)
         }
     }
+}
+
+/// The mesh of the first body of a scene; `None` of what is no scene.
+fn first_body(input: &Path, settings: &[String]) -> Result<Option<Arc<Mesh>>, Refusal> {
+    let path = scene_path(&input.to_string_lossy());
+    if path.extension().is_none_or(|extension| extension != "toml") {
+        return Ok(None);
+    }
+    let scene = souple_scene::read_file(&path, settings)?;
+    let mesh = scene.bodies.first().map(|body| Arc::clone(&body.mesh));
+    mesh.map(Some).ok_or_else(|| {
+        let message = "the scene has no body".to_owned();
+        Refusal::request("mesh", input.display().to_string(), "a scene with a body", message)
+    })
 }
 
 fn unfit(input: &Path, error: &souple_mesh::MeshError) -> Refusal {

@@ -50,6 +50,7 @@ mod rubber;
 mod shells;
 mod skins;
 mod soft_cube;
+mod splits;
 mod step_limits;
 mod stepper_orders;
 mod strain_measures;
@@ -96,6 +97,8 @@ pub const TABLES: &[&[Case]] = &[
     two_steppers::CASES,
     two_steppers::ONE_LINEARISATION,
     two_steppers::EXPLICIT_STEPS,
+    splits::CASES,
+    splits::KEPT_STEPS,
     step_limits::CASES,
     step_limits::EXPLICIT_LIMITS,
     long_beam::CASES,

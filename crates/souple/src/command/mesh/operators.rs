@@ -1,8 +1,5 @@
 //! What the operators of the formulations make of a mesh.
 
-use std::path::Path;
-use std::sync::Arc;
-
 use serde_json::{Value as Json, json};
 use souple_mesh::Mesh;
 use souple_models::materials::Lame;
@@ -10,7 +7,7 @@ use souple_models::solids::{OperatorQuality, operator_quality};
 use souple_table::{Parameter, Range, Value};
 
 use super::parameters;
-use crate::command::{Refusal, print_line, scene_path};
+use crate::command::{Refusal, print_line};
 
 /// V-01's cube.
 pub static PARAMETERS: [Parameter; 3] = [
@@ -18,20 +15,6 @@ pub static PARAMETERS: [Parameter; 3] = [
     Parameter::number("lambda", "Pa", Range::NOT_NEGATIVE, "first Lamé parameter").or(Value::Number(20000.0)),
     Parameter::number("density", "kg/m³", Range::POSITIVE, "of the matter").or(Value::Number(1000.0)),
 ];
-
-/// The mesh of the first body of a scene; `None` of what is no scene.
-pub fn first_body(input: &Path, settings: &[String]) -> Result<Option<Arc<Mesh>>, Refusal> {
-    let path = scene_path(&input.to_string_lossy());
-    if path.extension().is_none_or(|extension| extension != "toml") {
-        return Ok(None);
-    }
-    let scene = souple_scene::read_file(&path, settings)?;
-    let mesh = scene.bodies.first().map(|body| Arc::clone(&body.mesh));
-    mesh.map(Some).ok_or_else(|| {
-        let message = "the scene has no body".to_owned();
-        Refusal::request("operators", input.display().to_string(), "a scene with a body", message)
-    })
-}
 
 pub fn of(mesh: &Mesh, texts: &[String]) -> Result<Vec<OperatorQuality>, Refusal> {
     let known: Vec<&Parameter> = PARAMETERS.iter().collect();
