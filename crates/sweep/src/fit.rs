@@ -153,6 +153,15 @@ impl Fit {
     }
 }
 
+impl std::fmt::Display for Wanted {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self.component {
+            None => f.write_str(&self.name),
+            Some(component) => write!(f, "{}.{}", self.name, ["x", "y", "z"][component]),
+        }
+    }
+}
+
 impl Wanted {
     /// `PROBE`, `PROBE.x`: the probe and its component.
     pub(crate) fn read(key: &'static str, text: &str) -> Self {

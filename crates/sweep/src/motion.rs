@@ -106,7 +106,7 @@ const LINEAR_QUADRATIC_KEYS: &[&str] =
 const KEY_KEYS: &[&str] = &["time", "probe", "value"];
 const WEIGHTED_KEY_KEYS: &[&str] = &["time", "probe", "value", "weight"];
 const COST_KEYS: &[&str] = &["probe", "value", "weight"];
-/// Coordinates of a scene that is planned for, positions and velocities, at most: a period is stepped four times for each.
+/// Coordinates of a scene that is planned for, positions and velocities, at most: a period is stepped twice for each.
 const MOST_COORDINATES: usize = 600;
 /// Commands in all, at most.
 const MOST_COMMANDS: usize = 100_000;

@@ -149,6 +149,9 @@ impl ControlSpec {
             );
         };
         let is_of_actuator = reader.has("actuator");
+        if reader.has("ramp") && !reader.has("connects") {
+            refuse("ramp", format!("control `{name}` connects nothing"), "`ramp` beside `connects`");
+        }
         let drives = match reader.written(&["connects", "parameter", "value", "plan"])[..] {
             ["value"] if is_of_actuator => Formula::compile(&reader.text("value"), &variables)
                 .map(Drives::Command)
@@ -175,7 +178,7 @@ impl ControlSpec {
                 refuse(
                     "parameter",
                     format!("control `{name}` does not say what it does"),
-                    "connects, or parameter and value",
+                    "connects, or parameter and value; with an actuator value or plan",
                 );
                 None
             }

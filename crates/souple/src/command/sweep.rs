@@ -232,7 +232,7 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     if arguments.json {
         let keys = motion.keys.iter().zip(&found.reached);
         let keys = keys.map(|(key, reached)| {
-            json!({"time": key.time, "probe": key.probe.name, "value": key.value, "reached": reached})
+            json!({"time": key.time, "probe": key.probe.to_string(), "value": key.value, "reached": reached})
         });
         print_json(&json!({
             "title": study.title,
@@ -248,7 +248,7 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
         }));
     } else if !arguments.quiet {
         for (key, reached) in motion.keys.iter().zip(&found.reached) {
-            let (probe, value) = (&key.probe.name, key.value);
+            let (probe, value) = (key.probe.to_string(), key.value);
             print_line(format_args!("{probe} at {} s: {reached:.9e}, for {value:.9e}", key.time));
         }
         print_line(format_args!(

@@ -97,6 +97,13 @@ pub fn read(
             "columns `time [s]` and `BODY.CONTROL [N]`, named in the first line",
         );
     };
+    for (at, unit) in [(0, "s"), (column, "N")] {
+        let cell = head.split(',').nth(at).unwrap_or_default().trim();
+        let has_other = cell.split_once(" [").is_some_and(|(_, rest)| rest.trim_end_matches(']') != unit);
+        if has_other {
+            return refuse(Code::WrongType, format!("a column is `{cell}`"), "times in s and commands in N");
+        }
+    }
     // columns of what is planned and of the gain, and what there is of each
     let mut gains: Vec<([usize; 2], Gain)> = Vec::new();
     for (at, name) in names.iter().enumerate().filter(|_| feedback == Feedback::AsPlanned) {
