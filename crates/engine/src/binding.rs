@@ -112,7 +112,10 @@ pub trait Binding: Send + Sync {
 
 /// The value of a relation where whole periods make no difference: the one nearest to another, so that what flows on does not come back.
 fn value_near(binding: &dyn Binding, relation: usize, (positions, time): (&[Vec3], f64), near: Vec3) -> Vec3 {
-    let (value, period) = (binding.value(relation, positions, time), binding.period(relation));
+    nearest(binding.value(relation, positions, time), binding.period(relation), near)
+}
+
+fn nearest(value: Vec3, period: f64, near: Vec3) -> Vec3 {
     if period > 0.0 { value - Vec3::X * (period * ((value.x - near.x) / period).round()) } else { value }
 }
 
@@ -774,7 +777,7 @@ impl Bound {
             let flow = Vec3::X * flow(memory, binding.relation_count(), *relation);
             let now = value_near(binding, *relation, (positions, start), flow);
             self.now.push(now);
-            let earlier = self.earlier(step, structure, index, (positions, memory)).from(flow);
+            let earlier = self.earlier(step, structure, index, now, (positions, memory)).from(flow);
             let wanted = flow + binding.wanted(*relation, earlier, now - flow, start, timestep);
             let entries = structure.starts[index]..structure.starts[index + 1];
             if !(now.is_finite() && self.gradients[entries].iter().all(|gradient| gradient.is_finite())) {
@@ -795,13 +798,15 @@ impl Bound {
         step: &Step,
         structure: &Structure,
         index: usize,
+        now: Vec3,
         (positions, memory): (&[Vec3], &[f64]),
     ) -> Earlier {
         let Step { system, start, timestep, .. } = *step;
         let (force, relation) = structure.relations[index];
         let Some(binding) = system.binding(force) else { return Earlier::Rate(Vec3::ZERO) };
         // there is nothing before the start: a formula may have no value there
-        let before = || binding.value(relation, &self.before, (start - timestep).max(0.0));
+        let moment = (start - timestep).max(0.0);
+        let before = || value_near(binding, relation, (&self.before, moment), now);
         if binding.is_told(relation) {
             return Earlier::Value(before());
         }
@@ -812,6 +817,7 @@ impl Bound {
         }
         if kind == known::VALUES {
             let before = before();
+            let remembered = nearest(remembered, binding.period(relation), before);
             let near =
                 self.tolerance(structure, index) + binding.magnitude(relation, positions, start) * ROUNDING;
             if (0..3).all(|axis| (before[axis] - remembered[axis]).abs() <= near[axis]) {

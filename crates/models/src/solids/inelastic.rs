@@ -3,21 +3,21 @@
 //! The deformation is an elastic one of a reference that has changed, `F = F_e F_p`, at each sample of each cell (Terzopoulos & Fleischer
 //! 1988, as solids of large strain have it). The law of the body, whichever it is, sees `F_e = F F_p⁻¹`: the cell is one
 //! whose rest gradients are `F_p⁻ᵀ ∇N`. The reference keeps its volume. `F_p` is memory: within a step the force has an energy and exact
-//! derivatives, and at the end of each step what has been strained goes over into the reference.
+//! derivatives, and once in each step what has been strained goes over into the reference: at its end, under explicit steppers at its start.
 //!
 //! With `C_e = F_eᵀ F_e = Σ λ_i² v_i ⊗ v_i` and the logarithmic strain `e = dev Σ ln λ_i v_i ⊗ v_i`, a share `η` of it goes over:
 //!
 //! `F_p ← exp(η e) F_p`, `F_e ← F_e exp(-η e)`.
 //!
-//! - Creep with the time `z`: `η = 1 - exp(-h/z)`, which is `∂F_p/∂t = e/z` exactly at a held strain: matter of Maxwell with the
+//! - Creep with the time `z`: `η = 1 - exp(-h/z)`, which is `Ḟ_p F_p⁻¹ = e/z` exactly at a held strain: matter of Maxwell with the
 //!   viscosity `G z`.
 //! - Yielding: where the equivalent stress of von Mises is above the threshold, the `η` that brings it to `σ_y + H ε̄` (or all of
 //!   it, `η = 1`, as the source has it). `ε̄` adds up `√(2/3 e:e) η`.
 //! - Fracture: a cell at a sample of which the greatest principal stress or stretch is beyond its limit has no stiffness from then on. Limits
 //!   are scattered from cell to cell by a seed.
 //!
-//! The equivalent stress is no more than the threshold at the end of a step, and may be above it within one by what a step strains: take steps
-//! that strain little.
+//! The equivalent stress of an isotropic law is no more than the threshold where the reference moves on, and may be above it elsewhere by what a step
+//! strains: take steps that strain little.
 //!
 //! Source: Terzopoulos & Fleischer 1988, §5; Simo & Hughes 1998, §9.3 (logarithmic strain, return to the threshold).
 

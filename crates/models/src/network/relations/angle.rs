@@ -7,6 +7,9 @@ use souple_math::{Mat3, Vec3};
 
 use super::{Relation, first_row};
 
+/// Sine below which segments count as in one line: half the digits of a direction are rounding then.
+const IN_LINE: f64 = 1e-7;
+
 /// `g = θ − θ₀(t)` of the angle `θ` from `u = x_a − x_b` to `w = x_c − x_b`. Its multiplier is the couple that opens it [N m].
 ///
 /// About an axis `n` it is that of what of `u` and `w` is across `n`, counterclockwise seen against it, and told beyond whole turns: `g` is the least of
@@ -39,6 +42,18 @@ impl Angle {
             }
             // no axis where they are in one line: there is no direction in which the angle changes smoothly
             None => Legs { axis: u.cross(w).try_normalised().unwrap_or(Vec3::ZERO), u, w },
+        }
+    }
+
+    /// Whether there is an angle, and a direction that opens it: no segment along the axis and, without one, none in line with the other, up to
+    /// [`IN_LINE`] of their lengths.
+    pub fn is_defined(&self, positions: &[Vec3]) -> bool {
+        let [a, b, c] = self.rows.map(|row| positions[row as usize]);
+        let (u, w) = (a - b, c - b);
+        let crossed = |v: Vec3, by: Vec3| v.cross(by).length() > IN_LINE * v.length() * by.length();
+        match self.axis {
+            Some(axis) => crossed(u, axis) && crossed(w, axis),
+            None => crossed(u, w),
         }
     }
 

@@ -198,9 +198,10 @@ impl Making<'_> {
             return self.refuse(Code::Conflict, message, "groups that share no masses, or one group");
         }
         let mut held = Vec::new();
-        for spec in
-            self.network.constraints.iter().filter(|spec| !spec.is_sided() && spec.augmented.is_none())
-        {
+        for spec in self.network.constraints.iter().filter(|spec| {
+            // what may give way does not keep balls apart
+            !spec.is_sided() && spec.augmented.is_none() && spec.yields_at.is_none()
+        }) {
             if let Some(ConstraintKind::Rod(join, _) | ConstraintKind::Joint(join)) = &spec.kind {
                 let of = (join, &spec.of[..], &spec.kind_site, "constraint");
                 held.extend(ends::joined(of, self.network, points, most, self.draft.log)?);
@@ -357,6 +358,20 @@ impl Making<'_> {
             .into_iter()
             .map(|rows| {
                 let mut relation = Angle { rows, axis, angle: Formula::constant(0.0) };
+                if !relation.is_defined(&points) {
+                    let masses = rows.map(|row| row as usize - self.body.rows.start);
+                    let (message, expected) = match axis {
+                        Some(_) => (
+                            format!("a segment of the corner {masses:?} lies along the axis, about which it has no angle"),
+                            "another `axis`, or masses off it",
+                        ),
+                        None => (
+                            format!("the corner {masses:?} lies in one line, where no direction opens it"),
+                            "an `axis`, or masses that are not in one line",
+                        ),
+                    };
+                    return self.refuse(Code::Conflict, message, expected);
+                }
                 relation.angle = angle.cloned().unwrap_or_else(|| Formula::constant(relation.at(&points)));
                 Some(Box::new(relation) as Box<dyn Relation>)
             })
