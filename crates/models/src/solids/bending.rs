@@ -306,7 +306,7 @@ enum Part {
     OfCurvature,
 }
 
-/// Bending of a surface of triangles: see [the head of this file](self).
+/// Bending of a surface of triangles, by angles at its edges (thin shells of docs/theory.md).
 pub struct Bending {
     name: String,
     folds: Vec<Fold>,

@@ -46,7 +46,7 @@ impl Angle {
     }
 
     /// Whether there is an angle, and a direction that opens it: no segment along the axis and, without one, none in line with the other, up to
-    /// [`IN_LINE`] of their lengths.
+    /// a ten-millionth of their lengths.
     pub fn is_defined(&self, positions: &[Vec3]) -> bool {
         let [a, b, c] = self.rows.map(|row| positions[row as usize]);
         let (u, w) = (a - b, c - b);
