@@ -63,7 +63,8 @@ impl Layout {
             end: place.start + to,
         };
         while at < end {
-            let rest = &written[at..end];
+            // what is no whole string, of a text with faults, may end within a character
+            let rest = written.get(at..end)?;
             let first = rest.chars().next()?;
             let wanted = text[layout.length..].chars().next();
             if first == '\\' && quote == '"' {
@@ -198,6 +199,13 @@ mod tests {
         let layout = Layout::of_literal(written, "a +", place);
         assert_eq!(layout.place_of(Span::new(3, 3)), Some(Place { source: 3, start: 14, end: 15 }));
         assert_eq!(Layout::of_literal("\"\"", "", place).place_of(Span::new(0, 0)), None);
+    }
+
+    /// A text that ends within a character where its quote should be, as damaged ones do, is taken as a whole.
+    #[test]
+    fn texts_without_an_end_are_whole() {
+        let place = Place { source: 0, start: 2, end: 6 };
+        assert_eq!(Layout::of_literal("\"m³", "m³", place).place_of(Span::new(0, 1)), Some(place));
     }
 
     /// A parameter that was put in stands for its name; what follows is found where it is.

@@ -418,6 +418,7 @@ fn every_quantity_is_measured() {
     let felt = format!("{CUBE}{FELT}");
     let held = format!("{CUBE}{}{HOLDING}", FELT.replace("mass = \"50 g\"\n", ""));
     let led = format!("{CUBE}{ON_A_BONE}");
+    let marked = format!("{CUBE}[bodies.cube.marks]\n");
     let probed = [
         (CUBE, ""),
         (CUBE, cube),
@@ -425,6 +426,7 @@ fn every_quantity_is_measured() {
         (&changing, cube),
         (LAYERED, cube),
         (GROUPED, cube),
+        (&marked, cube),
         (&felt, "hand = \"right\""),
         (&held, "hand = \"right\""),
         (&led, "body = \"cube\"\nbone = \"hand\""),
