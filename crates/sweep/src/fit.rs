@@ -199,9 +199,8 @@ impl Wanted {
         match (self.component, components) {
             (None, 1) => Ok(0),
             (Some(component), components) if components > 1 && component < components => Ok(component),
-            (Some(component), _) => {
-                let found = format!("{}.{}", self.name, ["x", "y", "z"][component]);
-                Err(SweepError::value(self.key, found, format!("{}, a scalar", self.name)))
+            (Some(_), _) => {
+                Err(SweepError::value(self.key, self.to_string(), format!("{}, a scalar", self.name)))
             }
             (None, _) => {
                 let expected = format!("a component of it: {0}.x, {0}.y or {0}.z", self.name);

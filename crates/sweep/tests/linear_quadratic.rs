@@ -1,27 +1,8 @@
 //! Commands and gains by linear-quadratic control (JIM-97, PA-44).
 
-use std::path::{Path, PathBuf};
+use souple_sweep::{Ending, FoundMotion};
 
-use souple_engine::Interruption;
-use souple_sweep::{Ending, FoundMotion, Planner, Study, SweepError};
-
-fn study(scene: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene).join("motion.toml")
-}
-
-/// The study of a scene with some words in the place of others.
-fn plan(scene: &str, changes: &[(&str, &str)]) -> Result<FoundMotion, SweepError> {
-    let path = study(scene);
-    let mut text = std::fs::read_to_string(&path).unwrap();
-    for (from, to) in changes {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    let study = Study::parse(&path, &text, |_| unreachable!("a plan reads no table"))?;
-    let (motion, stop) = (study.motion.as_ref().expect("a plan"), Interruption::default());
-    let found = Planner { study: &study, motion, stop: &stop }.run(&mut |_, _, _| {})?;
-    Ok(found.expect("not interrupted"))
-}
+use crate::motion::{plan, study};
 
 /// What is found is what is committed: as exact as differences of a linear step, of numbers up to `scale`.
 fn assert_committed(scene: &str, found: &FoundMotion, scale: f64) {

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use souple_engine::Interruption;
 use souple_sweep::{Ending, FoundMotion, Planner, Study, SweepError};
 
-fn study(scene: &str) -> PathBuf {
+pub fn study(scene: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene).join("motion.toml")
 }
 
 /// The study of a scene with some words in the place of others.
-fn plan(scene: &str, changes: &[(&str, &str)]) -> Result<FoundMotion, SweepError> {
+pub fn plan(scene: &str, changes: &[(&str, &str)]) -> Result<FoundMotion, SweepError> {
     let path = study(scene);
     let mut text = std::fs::read_to_string(&path).unwrap();
     for (from, to) in changes {
