@@ -83,6 +83,11 @@ impl<'a> CommittedRows<'a> {
         &self.workspaces[system].rows
     }
 
+    /// All forces of a system.
+    pub fn forces(&self, system: usize) -> &'a [Box<dyn Force>] {
+        &self.systems[system].forces
+    }
+
     /// Rows of the points of a body with levels that moved by themselves in the last step, ascending; `None` where the force
     /// is of no such body.
     pub fn active(&self, system: usize, force: usize) -> Option<&'a [u32]> {

@@ -1,8 +1,10 @@
-//! What tools leave on the surface of an organ: it whitens where it is pressed, and burns where something hot touches it
-//! (Debunne 2000, 5 §5.1).
+//! What tools leave on the surface of an organ: it whitens where it is pressed, burns where something hot touches it, and bleeds where
+//! its vessels are torn (Debunne 2000, 5 §5.1).
 //!
-//! Both are numbers of each node of the body's surface that evolve, a field of State. With `p` the normal force on a node over the
-//! area around it at rest, what blood is pressed out of it follows by first-order kinetics,
+//! All are numbers of each node of the body's surface that evolve, a field of State. A force on a node is borne by the faces around it
+//! that face it: `p = |f| / A` with `A = Σ max(-a_t · f/|f|, 0) / 3` over the area vectors `a_t` of the triangles around it as they stand,
+//! of sheets `Σ |a_t · f/|f|| / 3`; sides that run along the force bear nothing of it. What blood is pressed out of a node follows by
+//! first-order kinetics,
 //!
 //! ```text
 //! dw/dt = (w∞ - w) / τ,   w∞ = min(p / p_w, 1),   τ = τ_w where w < w∞, τ_r else
@@ -16,12 +18,20 @@
 //! ```
 //!
 //! with the dose `D` [J/m²], and the share `c` that is charred. Both are solved exactly over a period, in which pressure and touch are
-//! those of its end. Heat is not conducted along the surface or into the depth, and nothing heals.
+//! those of its end. Heat is not conducted along the surface or into the depth, and nothing heals. For blood see [`BleedingLaw`].
+
+mod blood;
 
 use std::sync::Arc;
 
 use souple_engine::{CommittedRows, Field, FieldState, FieldStep, Scratch, StepError};
+use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
+
+pub use blood::BleedingLaw;
+
+use crate::loads::Gravity;
+use blood::{Film, Running};
 
 /// How a surface takes what is done to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +44,8 @@ pub struct MarkingLaw {
     pub refill_time: f64,
     /// Heat per area that chars it, but for 1/e [J/m²].
     pub burn_dose: f64,
+    /// `None` where nothing makes it bleed.
+    pub bleeding: Option<BleedingLaw>,
 }
 
 impl MarkingLaw {
@@ -50,15 +62,62 @@ impl MarkingLaw {
     }
 }
 
-/// A contact with something hot.
+/// A contact with something hot, or sharp.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Heat {
+pub struct Tool {
     pub contact: String,
     /// [W/m²]
-    pub flux: f64,
+    pub heat: f64,
+    /// Pressure at which it tears vessels [Pa]; that of the law where `None`.
+    pub tears_at: Option<f64>,
 }
 
-/// The surface of a body that whitens and burns.
+/// Points of a surface that are cut, and when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gash {
+    /// [s]
+    pub time: f64,
+    /// Of the mesh; those inside are left out.
+    pub points: Vec<u32>,
+}
+
+/// On which sides of its triangles a surface is pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sides {
+    /// That of a body of volumes.
+    Outer,
+    /// A sheet's.
+    Both,
+}
+
+/// What is known of a surface beside how it takes what is done to it.
+#[derive(Debug)]
+pub struct MarkedSurface<'a> {
+    /// System of the body, and row of its first point there.
+    pub place: [usize; 2],
+    /// Boundary of its mesh.
+    pub surface: &'a TriangleSurface,
+    /// Of the mesh.
+    pub point_count: usize,
+    pub sides: Sides,
+    pub tools: Vec<Tool>,
+    pub gashes: Vec<Gash>,
+}
+
+/// What has been done to a point of the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mark {
+    /// From 0 to 1.
+    pub whitening: f64,
+    /// Heat per area that it has taken up [J/m²].
+    pub dose: f64,
+    /// Blood on it, by volume for each area at rest [m].
+    pub blood: f64,
+    /// The same about the point as a whole [m³].
+    pub blood_volume: f64,
+}
+
+/// The surface of a body that whitens, burns and bleeds.
 #[derive(Debug)]
 pub struct Marks {
     name: String,
@@ -70,42 +129,92 @@ pub struct Marks {
     points: Vec<u32>,
     /// Of each point of the mesh the number of its node.
     node_of_point: Vec<Option<u32>>,
-    /// Around each node, at rest [m²].
+    /// Corners, which are nodes.
+    triangles: Vec<[u32; 3]>,
+    /// Triangles around each node: those of node `i` are `around[starts[i]..starts[i + 1]]`.
+    around: Vec<u32>,
+    starts: Vec<u32>,
+    /// A third of the triangles around each node, at rest [m²].
     areas: Vec<f64>,
+    sides: Sides,
     law: MarkingLaw,
-    heats: Vec<Heat>,
+    tools: Vec<Tool>,
+    gashes: Vec<Gash>,
 }
 
 /// What is done to nodes at the end of a period.
 struct Done {
-    /// Normal force [N].
-    pressed: Vec<f64>,
+    /// [Pa]
+    pressures: Vec<f64>,
     /// Greatest of what touches it [W/m²].
     heated: Vec<f64>,
+    /// Whether something tears it.
+    torn: Vec<bool>,
+    /// Of each triangle, outward, as it stands [m²].
+    area_vectors: Vec<Vec3>,
+    /// Around each node as it stands [m²].
+    areas: Vec<f64>,
+    running: Running,
 }
 
+/// Numbers of each node, one list after the other: whitening and dose; of a surface that bleeds also the film of blood and the share of
+/// the vessels that is open.
+const LISTS: usize = 2;
+const LISTS_OF_BLEEDING: usize = 4;
+
 impl Marks {
-    /// Of the boundary of a mesh of `point_count` points, whose first is a row of a system (`[system, row]`), with the `areas` around
-    /// its points at rest [m²].
-    pub fn new(
-        name: String,
-        [system, first_row]: [usize; 2],
-        (surface, point_count): (&TriangleSurface, usize),
-        areas: Vec<f64>,
-        law: MarkingLaw,
-        heats: Vec<Heat>,
-    ) -> Self {
+    pub fn new(name: String, law: MarkingLaw, of: MarkedSurface) -> Self {
+        let MarkedSurface { place: [system, first_row], surface, point_count, sides, tools, gashes } = of;
         let mut node_of_point = vec![None; point_count];
         for (node, point) in surface.mesh_points.iter().enumerate() {
             node_of_point[*point as usize] = Some(node as u32);
         }
         let points = surface.mesh_points.clone();
-        Self { name, system, first_row, points, node_of_point, areas, law, heats }
+        let triangles = surface.triangles.clone();
+        let mut areas = vec![0.0; points.len()];
+        let mut about: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let third = surface.area_vector(triangle as u32).length() / 3.0;
+            for corner in corners {
+                areas[*corner as usize] += third;
+                about[*corner as usize].push(triangle as u32);
+            }
+        }
+        let ends = about.iter().scan(0, |end, list| {
+            *end += list.len() as u32;
+            Some(*end)
+        });
+        let starts = [0].into_iter().chain(ends).collect();
+        let around = about.into_iter().flatten().collect();
+        Self {
+            name,
+            system,
+            first_row,
+            points,
+            node_of_point,
+            triangles,
+            around,
+            starts,
+            areas,
+            sides,
+            law,
+            tools,
+            gashes,
+        }
     }
 
     /// Untouched.
     pub fn start(&self) -> FieldState {
-        FieldState { values: vec![0.0; 2 * self.points.len()], indices: Vec::new() }
+        FieldState { values: vec![0.0; self.lists() * self.points.len()], indices: Vec::new() }
+    }
+
+    /// Whether its vessels can be torn.
+    pub fn bleeds(&self) -> bool {
+        self.law.bleeding.is_some()
+    }
+
+    fn lists(&self) -> usize {
+        if self.bleeds() { LISTS_OF_BLEEDING } else { LISTS }
     }
 
     /// Whether a point of the mesh is on the surface.
@@ -113,15 +222,18 @@ impl Marks {
         self.node_of_point.get(point).is_some_and(Option::is_some)
     }
 
-    /// Of a point of the mesh how white it is, 0 to 1, and its dose [J/m²]; `None` inside.
-    pub fn marks_at(&self, point: usize, state: &FieldState) -> Option<(f64, f64)> {
+    /// What has been done to a point of the mesh; `None` inside.
+    pub fn mark_at(&self, point: usize, state: &FieldState) -> Option<Mark> {
         let node = (*self.node_of_point.get(point)?)? as usize;
-        Some((state.values[node], state.values[self.points.len() + node]))
+        let number = |list: usize| state.values.get(list * self.points.len() + node).copied().unwrap_or(0.0);
+        let blood = number(2);
+        Some(Mark { whitening: number(0), dose: number(1), blood, blood_volume: blood * self.areas[node] })
     }
 
-    /// How a point of the mesh looks: 1 where it is white, 0 as it was, -1 where it is charred, which nothing whitens; 0 inside.
+    /// How a point of the mesh looks beneath its blood: 1 where it is white, 0 as it was, -1 where it is charred, which nothing whitens;
+    /// 0 inside.
     pub fn look_at(&self, point: usize, state: &FieldState) -> f64 {
-        let (whitening, dose) = self.marks_at(point, state).unwrap_or_default();
+        let Mark { whitening, dose, .. } = self.mark_at(point, state).unwrap_or_default();
         let charred = self.law.charred(dose);
         whitening * (1.0 - charred) - charred
     }
@@ -131,23 +243,100 @@ impl Marks {
         Some((*self.node_of_point.get(point)?)? as usize)
     }
 
+    fn place(&self, node: u32, positions: &[Vec3]) -> Vec3 {
+        positions[self.first_row + self.points[node as usize] as usize]
+    }
+
+    /// Finds how the triangles stand, and the area around each node.
+    fn measure(&self, positions: &[Vec3], done: &mut Done) {
+        done.areas.fill(0.0);
+        for (corners, area_vector) in self.triangles.iter().zip(&mut done.area_vectors) {
+            let [a, b, c] = corners.map(|node| self.place(node, positions));
+            *area_vector = (b - a).cross(c - a) * 0.5;
+            let third = area_vector.length() / 3.0;
+            corners.iter().for_each(|corner| done.areas[*corner as usize] += third);
+        }
+    }
+
+    /// The area around a node that faces a force along a direction [m²].
+    fn facing(&self, node: usize, direction: Vec3, area_vectors: &[Vec3]) -> f64 {
+        let around = &self.around[self.starts[node] as usize..self.starts[node + 1] as usize];
+        let facing = |triangle: &u32| {
+            let along = -area_vectors[*triangle as usize].dot(direction);
+            if self.sides == Sides::Both { along.abs() } else { along.max(0.0) }
+        };
+        around.iter().map(facing).sum::<f64>() / 3.0
+    }
+
     fn look(&self, rows: CommittedRows, done: &mut Done) {
-        done.pressed.fill(0.0);
+        self.measure(&rows.of(self.system).positions, done);
+        done.pressures.fill(0.0);
         done.heated.fill(0.0);
+        done.torn.fill(false);
+        let usual = self.law.bleeding.map_or(f64::INFINITY, |law| law.pressure);
         rows.visit_contacts(self.system, &mut |contact, point| {
-            let force = point.normal_force.length();
-            if force == 0.0 {
-                return;
-            }
-            let flux = self.heats.iter().find(|heat| heat.contact == contact).map_or(0.0, |heat| heat.flux);
-            let mut touch = |row: u32, share: f64| {
-                let Some(node) = self.node_of_row(row).filter(|_| share > 0.0) else { return };
-                done.pressed[node] += force * share;
-                done.heated[node] = flux.max(done.heated[node]);
+            let tool = self.tools.iter().find(|tool| tool.contact == contact);
+            let heat = tool.map_or(0.0, |tool| tool.heat);
+            let tears_at = tool.and_then(|tool| tool.tears_at).unwrap_or(usual);
+            let mut touch = |row: u32, force: Vec3| {
+                let Some(node) = self.node_of_row(row) else { return };
+                let Some(direction) = force.try_normalised() else { return };
+                let facing = self.facing(node, direction, &done.area_vectors);
+                // what touches it from behind all of its faces presses none of them
+                let pressure = if facing > 0.0 { force.length() / facing } else { 0.0 };
+                done.pressures[node] += pressure;
+                done.heated[node] = heat.max(done.heated[node]);
+                done.torn[node] |= self.bleeds() && done.pressures[node] >= tears_at;
             };
-            touch(point.row, 1.0);
-            point.against.iter().for_each(|(row, share)| touch(*row, *share));
+            touch(point.row, point.normal_force);
+            point.against.iter().for_each(|(row, share)| touch(*row, -point.normal_force * *share));
         });
+    }
+
+    /// Tears the vessels of what is cut in a period, from after its start to its end [s].
+    fn cut(&self, start: f64, end: f64, done: &mut Done) {
+        let due = self.gashes.iter().filter(|gash| start < gash.time && gash.time <= end);
+        for point in due.flat_map(|gash| &gash.points) {
+            if let Some(Some(node)) = self.node_of_point.get(*point as usize) {
+                done.torn[*node as usize] = true;
+            }
+        }
+    }
+
+    /// Wells up, runs and dries.
+    fn bleed(
+        &self,
+        law: &BleedingLaw,
+        rows: CommittedRows,
+        step: &FieldStep,
+        values: &mut [f64],
+        done: &mut Done,
+    ) {
+        let count = self.points.len();
+        let (marks, blood) = values.split_at_mut(LISTS * count);
+        let (film, open) = blood.split_at_mut(count);
+        self.cut(step.start, step.start + step.timestep, done);
+        for (node, (film, open)) in film.iter_mut().zip(open.iter_mut()).enumerate() {
+            if done.torn[node] {
+                *open = 1.0;
+            }
+            // vessels that are pressed empty or charred have none to give
+            let [whitening, dose] = [marks[node], marks[count + node]];
+            let flows = (1.0 - whitening) * (1.0 - self.law.charred(dose));
+            *film = law.dried(*film, step.timestep) + flows * law.let_out(open, step.timestep);
+        }
+        let gravity =
+            rows.forces(self.system).iter().find_map(|force| force.as_any().downcast_ref::<Gravity>());
+        let gravity = gravity.map_or(Vec3::ZERO, |gravity| gravity.at(step.start + step.timestep));
+        let positions = &rows.of(self.system).positions;
+        let Done { area_vectors, areas, running, .. } = done;
+        let areas = [&self.areas[..], &areas[..]];
+        Film { film, triangles: &self.triangles, area_vectors, areas, gravity }.run(
+            law,
+            step.timestep,
+            |node| self.place(node, positions),
+            running,
+        );
     }
 }
 
@@ -166,14 +355,23 @@ impl Field for Kept {
     fn accepts(&self, field: &FieldState, current: &FieldState) -> bool {
         let has_size =
             (field.values.len(), field.indices.len()) == (current.values.len(), current.indices.len());
-        let within = |values: &[f64], most: f64| values.iter().all(|value| (0.0..=most).contains(value));
-        let (whitening, doses) = field.values.split_at(field.values.len() / 2);
-        has_size && within(whitening, 1.0) && within(doses, f64::MAX)
+        let most = [1.0, f64::MAX, f64::MAX, 1.0];
+        let lists = field.values.chunks_exact(self.0.points.len().max(1)).zip(most);
+        let mut lists = lists.map(|(list, most)| list.iter().all(|value| (0.0..=most).contains(value)));
+        has_size && lists.all(|is_within| is_within)
     }
 
     fn new_scratch(&self) -> Scratch {
-        let zeros = || vec![0.0; self.0.points.len()];
-        Box::new(Done { pressed: zeros(), heated: zeros() })
+        let marks = &*self.0;
+        let (nodes, triangles) = (marks.points.len(), marks.triangles.len());
+        Box::new(Done {
+            pressures: vec![0.0; nodes],
+            heated: vec![0.0; nodes],
+            torn: vec![false; nodes],
+            area_vectors: vec![Vec3::ZERO; triangles],
+            areas: vec![0.0; nodes],
+            running: if marks.bleeds() { Running::new(nodes, triangles) } else { Running::default() },
+        })
     }
 
     fn step(
@@ -186,18 +384,26 @@ impl Field for Kept {
         let marks = &*self.0;
         let Some(done) = scratch.downcast_mut::<Done>() else { unreachable!("its own scratch") };
         marks.look(rows, done);
-        let (whitening, doses) = field.values.split_at_mut(marks.points.len());
-        for (node, (whitening, dose)) in whitening.iter_mut().zip(doses).enumerate() {
-            let pressure = done.pressed[node] / marks.areas[node];
-            *whitening = marks.law.whitened(*whitening, pressure, step.timestep);
+        let (whitening, others) = field.values.split_at_mut(marks.points.len());
+        for (node, (whitening, dose)) in whitening.iter_mut().zip(others).enumerate() {
+            *whitening = marks.law.whitened(*whitening, done.pressures[node], step.timestep);
             *dose += done.heated[node] * step.timestep;
+        }
+        if let Some(law) = &marks.law.bleeding {
+            marks.bleed(law, rows, step, &mut field.values, done);
         }
         Ok(())
     }
 
-    fn bytes(&self, _scratch: &Scratch) -> usize {
-        let Marks { points, node_of_point, areas, .. } = &*self.0;
-        4 * points.capacity() + 8 * node_of_point.capacity() + 8 * areas.capacity() + 16 * points.len()
+    fn bytes(&self, scratch: &Scratch) -> usize {
+        let Marks { points, node_of_point, triangles, around, starts, areas, .. } = &*self.0;
+        let constant = 4 * (points.capacity() + around.capacity() + starts.capacity())
+            + 8 * (node_of_point.capacity() + areas.capacity())
+            + 12 * triangles.capacity();
+        let of_scratch = scratch.downcast_ref::<Done>().map_or(0, |done| {
+            25 * done.pressures.capacity() + 24 * done.area_vectors.capacity() + done.running.bytes()
+        });
+        constant + of_scratch
     }
 }
 
@@ -205,8 +411,21 @@ impl Field for Kept {
 mod tests {
     use super::*;
 
-    const LAW: MarkingLaw =
-        MarkingLaw { whitening_pressure: 2e3, whitening_time: 0.2, refill_time: 1.0, burn_dose: 3e4 };
+    const LAW: MarkingLaw = MarkingLaw {
+        whitening_pressure: 2e3,
+        whitening_time: 0.2,
+        refill_time: 1.0,
+        burn_dose: 3e4,
+        bleeding: None,
+    };
+
+    /// Of a surface without tools, whose first point is row 5 of its system.
+    fn marks_of(surface: &TriangleSurface, law: MarkingLaw) -> Marks {
+        let point_count = surface.mesh_points.iter().max().map_or(0, |most| *most as usize + 1);
+        let (tools, gashes) = (Vec::new(), Vec::new());
+        let of = MarkedSurface { place: [0, 5], surface, point_count, sides: Sides::Outer, tools, gashes };
+        Marks::new("marks".to_owned(), law, of)
+    }
 
     /// Under a pressure that is held, whatever the steps: `w = w∞ (1 - exp(-t/τ_w))`, and after it `w₀ exp(-t/τ_r)`.
     #[test]
@@ -229,15 +448,16 @@ mod tests {
     #[test]
     fn burns_hide_whitening() {
         let surface = TriangleSurface { mesh_points: vec![3, 1], ..TriangleSurface::default() };
-        let marks = Marks::new("marks".to_owned(), [0, 5], (&surface, 4), vec![1e-4; 2], LAW, Vec::new());
+        let marks = marks_of(&surface, LAW);
         assert_eq!(
             [4, 5, 6, 7, 8, 9].map(|row| marks.node_of_row(row)),
             [None, None, Some(1), None, Some(0), None]
         );
         let look = |white: f64, dose: f64| {
             let state = FieldState { values: vec![0.0, white, 0.0, dose], indices: Vec::new() };
-            assert_eq!(marks.marks_at(1, &state), Some((white, dose)));
-            assert_eq!((marks.marks_at(0, &state), marks.look_at(0, &state)), (None, 0.0));
+            let mark = Mark { whitening: white, dose, ..Mark::default() };
+            assert_eq!(marks.mark_at(1, &state), Some(mark));
+            assert_eq!((marks.mark_at(0, &state), marks.look_at(0, &state)), (None, 0.0));
             marks.look_at(1, &state)
         };
         assert_eq!([look(0.0, 0.0), look(1.0, 0.0)], [0.0, 1.0]);
@@ -250,15 +470,47 @@ mod tests {
     #[test]
     fn only_marks_are_accepted() {
         let surface = TriangleSurface { mesh_points: vec![0], ..TriangleSurface::default() };
-        let marks = Marks::new("marks".to_owned(), [0, 0], (&surface, 1), vec![1.0], LAW, Vec::new());
-        let (field, current) =
-            (Kept(Arc::new(marks)), FieldState { values: vec![0.0; 2], indices: Vec::new() });
-        let accepts = |values: &[f64]| {
-            field.accepts(&FieldState { values: values.to_vec(), indices: Vec::new() }, &current)
+        let accepts = |law: MarkingLaw, values: &[f64]| {
+            let marks = marks_of(&surface, law);
+            let current = marks.start();
+            let field = FieldState { values: values.to_vec(), indices: Vec::new() };
+            Kept(Arc::new(marks)).accepts(&field, &current)
         };
-        assert!(accepts(&[0.5, 1e4]));
-        assert!(
-            !accepts(&[0.5]) && !accepts(&[f64::NAN, 0.0]) && !accepts(&[0.5, -1.0]) && !accepts(&[1.5, 0.0])
-        );
+        assert!(accepts(LAW, &[0.5, 1e4]));
+        for bad in [&[0.5][..], &[f64::NAN, 0.0], &[0.5, -1.0], &[1.5, 0.0], &[0.5, 1e4, 0.0, 0.0]] {
+            assert!(!accepts(LAW, bad), "{bad:?}");
+        }
+        let bleeding = MarkingLaw { bleeding: Some(blood::testing::LAW), ..LAW };
+        assert!(accepts(bleeding, &[0.5, 1e4, 1e-4, 1.0]));
+        for bad in [[0.5, 1e4, -1e-4, 1.0], [0.5, 1e4, 1e-4, 1.5], [0.5, 1e4, f64::INFINITY, 1.0]] {
+            assert!(!accepts(bleeding, &bad), "{bad:?}");
+        }
+    }
+
+    /// On an edge of a block the faces that face a force bear it, and not those along it: a corner of a unit cube has a third of the
+    /// triangles of its lower side there, or two thirds of them by how the square is cut, and one pressed askew bears by what it faces.
+    #[test]
+    fn faces_bear_what_they_face() {
+        let values = souple_table::Values::new()
+            .with("size", souple_table::Value::Vector([1.0; 3]))
+            .with("cells", souple_table::Value::Vector([1.0; 3]))
+            .with("element", souple_table::Value::Text("hex8"));
+        let mesh = souple_mesh::generate("box", values).unwrap();
+        let surface = mesh.boundary_surface();
+        let marks = marks_of(&surface, LAW);
+        let vectors: Vec<Vec3> =
+            (0..surface.triangles.len()).map(|triangle| surface.area_vector(triangle as u32)).collect();
+        let below: Vec<usize> = (0..8).filter(|node| surface.points[*node].y < 1e-9).collect();
+        let facing =
+            |direction: Vec3| below.iter().map(|node| marks.facing(*node, direction, &vectors)).sum::<f64>();
+        assert_eq!(below.len(), 4);
+        // the whole lower side, while the areas around these nodes have two thirds of the sides in them as well
+        assert!((facing(Vec3::Y) - 1.0).abs() < 1e-15, "{}", facing(Vec3::Y));
+        assert!(below.iter().map(|node| marks.areas[*node]).sum::<f64>() > 2.5);
+        // from above nothing of them is faced
+        assert_eq!(facing(-Vec3::Y), 0.0);
+        let askew = Vec3::new(0.6, 0.8, 0.0);
+        let half: f64 = below.iter().map(|node| marks.facing(*node, Vec3::X, &vectors)).sum();
+        assert!((facing(askew) - 0.8 - 0.6 * half).abs() < 1e-15);
     }
 }

@@ -23,7 +23,7 @@ use souple_models::loads::{
     Attachments, Combination, Drag, FormulaVector, Gravity, GroundSpring, GroundSprings, Link, MassDamping,
     PointLoad, RigidMotion,
 };
-use souple_models::marks::{Heat, Kept, MarkingLaw, Marks};
+use souple_models::marks::{BleedingLaw, Kept, MarkedSurface, MarkingLaw, Marks, Sides, Tool};
 use souple_models::materials::{self, Material};
 use souple_models::multiresolution::{
     Choice, Coupling, LevelsDescription, LevelsForce, Loops, PLACE_VARIABLES, Stiffness,
@@ -395,10 +395,30 @@ fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
         Box::new(SurfaceContact::new("pair", side(0), side(count as u32), LAW, 0.1).unwrap()),
     ];
     let system = System { kinematics, mass, forces, constraints: vec![], ..system };
-    let law = MarkingLaw { whitening_pressure: 10.0, whitening_time: 0.1, refill_time: 0.5, burn_dose: 1.0 };
-    let areas = vec![0.01; surface.points.len()];
-    let heats = vec![Heat { contact: "ground".into(), flux: 1.0 }];
-    let marks = Marks::new("marks".into(), [0, 0], (&surface, count), areas, law, heats);
+    let bleeding = BleedingLaw {
+        pressure: 1.0,
+        rate: 1e-4,
+        clotting_time: 10.0,
+        drying_time: 10.0,
+        viscosity: 3.5e-3,
+        clinging: 1e-5,
+    };
+    let law = MarkingLaw {
+        whitening_pressure: 1e6,
+        whitening_time: 0.1,
+        refill_time: 0.5,
+        burn_dose: 1e3,
+        bleeding: Some(bleeding),
+    };
+    let marked = MarkedSurface {
+        place: [0, 0],
+        surface: &surface,
+        point_count: count,
+        sides: Sides::Outer,
+        tools: vec![Tool { contact: "ground".into(), heat: 1.0, tears_at: None }],
+        gashes: Vec::new(),
+    };
+    let marks = Marks::new("marks".into(), law, marked);
     let fields = vec![marks.start()];
     let state =
         State { systems: vec![system.initial_state([low, above].concat())], fields, ..State::default() };

@@ -7,11 +7,12 @@ use souple_engine::{Adapted, Force, Model, World};
 use souple_io::{Facets, Field, Output, Precision, Series, write_mesh};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
-use souple_scene::{BodyInfo, DressInfo, MarksInfo, SkinInfo};
+use souple_models::marks::Mark;
+use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use crate::Session;
 use crate::output::{FRAMES, OutputError, OutputFolder};
-use crate::show::{Moment, TISSUE};
+use crate::show::{BLOOD, Moment, TISSUE};
 
 /// Writes frames at even distances; none where the run has no folder.
 pub struct Frames {
@@ -261,7 +262,7 @@ pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
     (mesh, normals)
 }
 
-/// A display surface as it stands: its triangles, displacements, levels and normals.
+/// A display surface as it stands: its triangles, displacements, levels, normals and the marks that are carried over to it.
 pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
     let mut mesh = Mesh { points: info.points(world), ..Mesh::default() };
     let triangles = info.dress.triangles();
@@ -269,11 +270,16 @@ pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
     let normals = souple_mesh::vertex_normals(&mesh.points, triangles);
     let moved = mesh.points.iter().zip(info.dress.rest()).map(|(x, rest)| *x - *rest);
     let displacements: Vec<Vec3> = moved.collect();
-    let fields = vec![
+    let mut fields = vec![
         Field::new(DISPLACEMENT, 3, flat(&displacements)),
         Field::new("level", 1, info.levels(world)),
         normal_field(&normals),
     ];
+    fields.extend(info.marks.iter().flat_map(|carried| {
+        let mark = |node: usize| carried.mark_at(node, world);
+        let look = |node: usize| carried.look_at(node, world);
+        fields_of_marks(mesh.points.len(), carried.marks.marks.bleeds(), mark, look)
+    }));
     (mesh, fields)
 }
 
@@ -314,21 +320,33 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
         .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
     let (radius, of_links) = crate::links::fields(world, body);
     point_fields.extend(radius);
-    point_fields.extend(body.marks.iter().flat_map(|marks| fields_of_marks(marks, positions.len(), world)));
+    point_fields.extend(body.marks.iter().flat_map(|marks| {
+        let mark = |point: usize| marks.mark_at(point, world).unwrap_or_default();
+        let look = |point: usize| marks.look_at(point, world);
+        fields_of_marks(positions.len(), marks.marks.bleeds(), mark, look)
+    }));
     let mut of_cells = cell_fields(world, body);
     of_cells.extend(of_links);
     (point_fields, of_cells)
 }
 
-/// What tools left on the surface, nothing inside: whitening, dose, and how both look.
-fn fields_of_marks(marks: &MarksInfo, point_count: usize, world: &World) -> [Field; 3] {
-    let at_points = |value: &dyn Fn(usize) -> f64| (0..point_count).map(value).collect();
-    let at = |point: usize| marks.marks_at(point, world).unwrap_or_default();
-    [
-        Field::new("whitening", 1, at_points(&|point| at(point).0)),
-        Field::new("burn", 1, at_points(&|point| at(point).1)),
-        Field::new(TISSUE, 1, at_points(&|point| marks.look_at(point, world))),
-    ]
+/// What tools left on a surface, nothing inside: whitening, dose, how both look, and the blood on it where it bleeds.
+fn fields_of_marks(
+    count: usize,
+    bleeds: bool,
+    mark: impl Fn(usize) -> Mark,
+    look: impl Fn(usize) -> f64,
+) -> Vec<Field> {
+    let field = |name: &str, number: fn(&Mark) -> f64| {
+        Field::new(name, 1, (0..count).map(|point| number(&mark(point))).collect())
+    };
+    let mut fields = vec![
+        field("whitening", |mark| mark.whitening),
+        field("burn", |mark| mark.dose),
+        Field::new(TISSUE, 1, (0..count).map(look).collect()),
+    ];
+    fields.extend(bleeds.then(|| field(BLOOD, |mark| mark.blood)));
+    fields
 }
 
 fn flat(vectors: &[Vec3]) -> Vec<f64> {

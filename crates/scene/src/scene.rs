@@ -13,7 +13,7 @@ use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::{Carried, FramesReport};
-use souple_models::marks::Marks;
+use souple_models::marks::{Mark, Marks};
 use souple_models::materials::Material;
 use souple_models::multiresolution::Dress;
 use souple_models::solids::keeps_texts;
@@ -205,12 +205,12 @@ impl MarksInfo {
         &world.state().fields[self.field]
     }
 
-    /// Of a point of the body how white it is, 0 to 1, and its dose [J/m²]; `None` inside.
-    pub fn marks_at(&self, point: usize, world: &World) -> Option<(f64, f64)> {
-        self.marks.marks_at(point, self.state(world))
+    /// What was done to a point of the body; `None` inside.
+    pub fn mark_at(&self, point: usize, world: &World) -> Option<Mark> {
+        self.marks.mark_at(point, self.state(world))
     }
 
-    /// How a point of the body looks: 1 where it is white, 0 as it was and inside, -1 where it is charred.
+    /// How a point of the body looks beneath its blood: 1 where it is white, 0 as it was and inside, -1 where it is charred.
     pub fn look_at(&self, point: usize, world: &World) -> f64 {
         self.marks.look_at(point, self.state(world))
     }
@@ -223,6 +223,38 @@ pub struct DressInfo {
     /// Index of its field.
     pub field: usize,
     pub dress: Arc<Dress>,
+    /// What tools leave on the surface of the body that wears it.
+    pub marks: Option<CarriedMarks>,
+}
+
+/// What tools leave on the surface of a body, carried over to one that it wears.
+#[derive(Clone, Debug)]
+pub struct CarriedMarks {
+    pub marks: MarksInfo,
+    /// Of each node of the dress, points of the body and their weights: the corners of the triangle of the body's surface that is
+    /// nearest to it at rest, and where that is nearest.
+    pub places: Arc<[[(u32, f64); 3]]>,
+}
+
+impl CarriedMarks {
+    /// What was done where a node is.
+    pub fn mark_at(&self, node: usize, world: &World) -> Mark {
+        let mut sum = Mark::default();
+        for (point, weight) in self.places[node] {
+            let mark = self.marks.mark_at(point as usize, world).unwrap_or_default();
+            sum.whitening += weight * mark.whitening;
+            sum.dose += weight * mark.dose;
+            sum.blood += weight * mark.blood;
+            sum.blood_volume += weight * mark.blood_volume;
+        }
+        sum
+    }
+
+    /// How a node looks beneath its blood, as [`MarksInfo::look_at`].
+    pub fn look_at(&self, node: usize, world: &World) -> f64 {
+        let look = |(point, weight): (u32, f64)| weight * self.marks.look_at(point as usize, world);
+        self.places[node].into_iter().map(look).sum()
+    }
 }
 
 impl DressInfo {

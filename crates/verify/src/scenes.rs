@@ -79,6 +79,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("liver_of_balls", include_str!("../../../scenes/liver_of_balls/scene.toml")),
     ("loaded_bar", include_str!("../../../scenes/loaded_bar/scene.toml")),
     ("long_beam", include_str!("../../../scenes/long_beam/scene.toml")),
+    ("bleeding_organ", include_str!("../../../scenes/bleeding_organ/scene.toml")),
     ("marked_organ", include_str!("../../../scenes/marked_organ/scene.toml")),
     ("material_tests", include_str!("../../../scenes/material_tests/scene.toml")),
     ("medium", include_str!("../../../scenes/medium/scene.toml")),

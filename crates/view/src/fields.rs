@@ -20,6 +20,8 @@ pub struct Field {
     pub source: Source,
     /// The map whose colours its numbers have, where these are how bodies look; `None` of numbers to be read by any map.
     pub look: Option<ColourMap>,
+    /// The field that comes along, of what lies over how bodies look.
+    pub over: Option<&'static str>,
 }
 
 /// Where the number comes from.
@@ -29,6 +31,8 @@ pub enum Source {
     Point(fn(&World, &BodyInfo, usize) -> f64),
     /// Of a point, by its number in the mesh, of bodies whose surfaces show what tools leave on them.
     Marks(fn(&World, &MarksInfo, usize) -> f64),
+    /// The blood on a point, of bodies whose surfaces bleed.
+    Blood,
     /// Of each point of the mesh, of a frame that carries it.
     Influence,
     /// Of the cells about a point, in the mean.
@@ -45,14 +49,23 @@ const fn entry(
     source: Source,
     summary: &'static str,
 ) -> Entry<Field> {
-    Entry { name, summary, source: "", parameters: &[], build: Field { unit, source, look: None } }
+    Entry {
+        name,
+        summary,
+        source: "",
+        parameters: &[],
+        build: Field { unit, source, look: None, over: None },
+    }
 }
 
-/// What bodies look like, by a map whose colours mean something of their own.
+/// What bodies look like, by a map whose colours mean something of their own, beneath the blood on them.
 const fn look(name: &'static str, map: ColourMap, source: Source, summary: &'static str) -> Entry<Field> {
-    let build = Field { unit: "", source, look: Some(map) };
+    let build = Field { unit: "", source, look: Some(map), over: Some(BLOOD) };
     Entry { name, summary, source: "", parameters: &[], build }
 }
+
+/// The field of what lies over how bodies look.
+const BLOOD: &str = "blood";
 
 /// All fields; adding one is a line.
 pub static FIELDS: Table<Field> = Table {
@@ -92,14 +105,20 @@ pub static FIELDS: Table<Field> = Table {
         &entry(
             "whitening",
             "",
-            Source::Marks(|world, marks, point| marks.marks_at(point, world).unwrap_or_default().0),
+            Source::Marks(|world, marks, point| marks.mark_at(point, world).unwrap_or_default().whitening),
             "how white surfaces are where they are pressed",
         ),
         &entry(
             "burn",
             "J/m²",
-            Source::Marks(|world, marks, point| marks.marks_at(point, world).unwrap_or_default().1),
+            Source::Marks(|world, marks, point| marks.mark_at(point, world).unwrap_or_default().dose),
             "heat per area that surfaces have taken up",
+        ),
+        &entry(
+            BLOOD,
+            "m",
+            Source::Blood,
+            "how thick blood lies on surfaces that bleed; pages that show how bodies look lay it over them",
         ),
         &entry("element", "", Source::Classes(KINDS), "the kinds of elements"),
         &entry("law", "", Source::Classes(LAWS), "the law of each element, also where it changes"),
@@ -190,6 +209,12 @@ fn contact_forces(world: &World, body: &BodyInfo) -> Vec<Vec3> {
 }
 
 impl Field {
+    /// The number of the field that comes along.
+    pub fn over(&self) -> Option<usize> {
+        let name = self.over?;
+        FIELDS.entries.iter().position(|entry| entry.name == name)
+    }
+
     /// What there is to a value at each point that is shown of a body, or at each of its `links`, or at each triangle of its surface and
     /// then at each cell if the inside is shown; `None` where it has no such field.
     pub fn read(
@@ -210,6 +235,12 @@ impl Field {
             Source::Marks(value) => {
                 let marks = body.marks.as_ref()?;
                 let value = |point: &u32| value(world, marks, *point as usize) as f32;
+                Some(Read::Numbers(points.iter().map(value).collect()))
+            }
+            Source::Blood => {
+                let marks = body.marks.as_ref().filter(|marks| marks.marks.bleeds())?;
+                let value =
+                    |point: &u32| marks.mark_at(*point as usize, world).unwrap_or_default().blood as f32;
                 Some(Read::Numbers(points.iter().map(value).collect()))
             }
             Source::Influence => {
@@ -245,6 +276,9 @@ impl Field {
         match self.source {
             Source::Point(_) => !bodies.is_empty(),
             Source::Marks(_) => bodies.iter().any(|body| body.marks.is_some()),
+            Source::Blood => {
+                bodies.iter().any(|body| body.marks.as_ref().is_some_and(|marks| marks.marks.bleeds()))
+            }
             Source::Influence => bodies.iter().any(|body| body.frames.is_some()),
             Source::Cells(_) => {
                 let has_cells = |body: &BodyInfo| {
@@ -267,7 +301,9 @@ impl Field {
         match self.source {
             Source::Links(_) => "links",
             Source::Classes(_) => "cells",
-            Source::Point(_) | Source::Marks(_) | Source::Influence | Source::Cells(_) => "points",
+            Source::Point(_) | Source::Marks(_) | Source::Blood | Source::Influence | Source::Cells(_) => {
+                "points"
+            }
         }
     }
 

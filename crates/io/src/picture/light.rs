@@ -63,9 +63,13 @@ impl Lamps {
             let middle = (lamp + view).try_normalised().unwrap_or(view);
             (normal.dot(middle).max(0.0) as f32).powi(sharpness)
         };
-        let gloss = 0.07 * lit * shine(self.key, 42) + 0.025 * shine(self.fill, 24);
+        let dull = 0.07 * lit * shine(self.key, 42) + 0.025 * shine(self.fill, 24);
+        // a film of liquid is smooth: lamps are seen in it small and bright
+        let wet = 0.9 * lit * shine(self.key, 220) + 0.2 * shine(self.fill, 120);
+        let gloss = dull + sample.wet * wet;
         // Schlick: surfaces seen at a glance reflect the sky
-        let glance = (1.0 - normal.dot(view).clamp(0.0, 1.0) as f32).powi(4) * 0.07 * open;
+        let glance =
+            (1.0 - normal.dot(view).clamp(0.0, 1.0) as f32).powi(4) * (0.07 + 0.15 * sample.wet) * open;
         let reflected = sample
             .albedo
             .times(diffuse)

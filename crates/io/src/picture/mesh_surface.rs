@@ -255,6 +255,12 @@ impl MeshSurface {
         }
     }
 
+    /// Lays blood over the paint, of a thickness for each point of the mesh [m].
+    pub fn cover(&mut self, film: &[f64]) {
+        let film = self.with_middles(film);
+        self.surface.film = self.points.iter().map(|point| point.of(&film)).collect();
+    }
+
     /// Paints by a value for each point of the mesh.
     pub fn paint_points(&mut self, values: &[f64]) {
         let values = self.with_middles(values);

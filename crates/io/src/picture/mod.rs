@@ -3,6 +3,7 @@
 
 mod animated_png;
 mod balls;
+mod blood;
 mod camera;
 mod colour;
 mod colour_map;
@@ -389,6 +390,7 @@ impl Picture {
                     place: surface.points[corners[k] as usize],
                     normal: normals[triangle][k].to_array().map(|component| component as f32),
                     paint: paint[k],
+                    film: surface.film.get(corners[k] as usize).map_or(0.0, |film| *film as f32),
                 };
                 let edges = [0, 1, 2].map(|edge: usize| all[edge] && marked[edge]);
                 let before = near::before_eye(camera, [0, 1, 2].map(corner), edges);
@@ -396,6 +398,7 @@ impl Picture {
                     corners: corners.map(|corner| camera.project(corner.place)),
                     normals: corners.map(|corner| corner.normal),
                     paint: corners.map(|corner| corner.paint),
+                    film: corners.map(|corner| corner.film),
                     edges,
                     wireframe: surface.edge_style == EdgeStyle::Wireframe,
                     map: self.colours,

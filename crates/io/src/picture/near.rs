@@ -11,6 +11,8 @@ pub(super) struct Corner {
     pub place: Vec3,
     pub normal: [f32; 3],
     pub paint: PaintAt,
+    /// Blood [m].
+    pub film: f32,
 }
 
 impl Corner {
@@ -23,7 +25,12 @@ impl Corner {
             (paint, _) => paint,
         };
         let normal = [0, 1, 2].map(|axis: usize| mixed(self.normal[axis], other.normal[axis]));
-        Self { place: self.place + (other.place - self.place) * share, normal, paint }
+        Self {
+            place: self.place + (other.place - self.place) * share,
+            normal,
+            paint,
+            film: mixed(self.film, other.film),
+        }
     }
 }
 

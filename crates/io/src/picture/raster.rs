@@ -1,6 +1,7 @@
 //! Triangles and strokes into samples, the nearest one wins.
 
 use super::balls::Ball;
+use super::blood;
 use super::camera::{Camera, Projected};
 use super::colour::Colour;
 use super::colour_map::ColourMap;
@@ -14,6 +15,8 @@ pub(super) struct Sample {
     pub normal: [f32; 3],
     /// The paint, without light.
     pub albedo: Colour,
+    /// How much it shines as water does, 0 to 1.
+    pub wet: f32,
     /// Whether the inside of the surface is seen.
     pub inside: bool,
     /// Whether it shows through what is see-through.
@@ -25,6 +28,7 @@ impl Sample {
         inverse_depth: 0.0,
         normal: [0.0; 3],
         albedo: Colour::BLACK,
+        wet: 0.0,
         inside: false,
         shows_through: false,
     };
@@ -47,6 +51,8 @@ pub(super) struct Painted {
     pub corners: [Projected; 3],
     pub normals: [[f32; 3]; 3],
     pub paint: [PaintAt; 3],
+    /// Blood at the corners [m].
+    pub film: [f32; 3],
     /// Whether the edges 01, 12, 20 are lines.
     pub edges: [bool; 3],
     pub wireframe: bool,
@@ -205,6 +211,7 @@ impl Samples {
                     inverse_depth,
                     normal: normal.to_array().map(|component| component as f32),
                     albedo,
+                    wet: 0.0,
                     inside: false,
                     shows_through: !with.see_through,
                 };
@@ -230,10 +237,13 @@ impl Painted {
         if inside {
             normal = normal.map(|component| -component);
         }
-        let (normal, albedo) = (normalised(normal), self.albedo(weights));
+        let film: f32 = weights.iter().zip(self.film).map(|(weight, film)| weight * film).sum();
+        let (normal, bare) = (normalised(normal), self.albedo(weights));
+        let (albedo, wet) =
+            if film > 0.0 { (blood::seen_through(bare, film), blood::wetness(film)) } else { (bare, 0.0) };
         // lines are seen from all sides, and have no inside that lies in the dark
         let inside = inside && !self.wireframe;
-        Sample { inverse_depth, normal, albedo, inside, shows_through: !self.see_through }
+        Sample { inverse_depth, normal, albedo, wet, inside, shows_through: !self.see_through }
     }
 
     fn albedo(&self, weights: [f32; 3]) -> Colour {

@@ -20,6 +20,8 @@ pub struct Surface {
     /// Spheres beside the triangles.
     pub balls: Vec<Ball>,
     pub paint: Paint,
+    /// Thickness of the blood on the points [m], which is seen over the paint and shines; empty: none.
+    pub film: Vec<f64>,
     pub edge_style: EdgeStyle,
     pub faces: Faces,
     /// Other surfaces behind it show through; where there are none, it is solid. Such surfaces come last in a picture.
@@ -116,6 +118,13 @@ impl Surface {
         }
         if !self.edges.is_empty() && self.edges.len() != self.triangles.len() {
             return refuse("the number of edge marks", self.edges.len(), format!("{}", self.triangles.len()));
+        }
+        if !self.film.is_empty() && self.film.len() != count {
+            return refuse(
+                "the number of thicknesses",
+                self.film.len(),
+                format!("{count}, one for each point"),
+            );
         }
         match &self.paint {
             Paint::PointScalar(values) if values.len() != count + self.balls.len() => {

@@ -91,7 +91,8 @@ impl Gravity {
         Self { frame: Some(frame), ..self }
     }
 
-    fn at(&self, time: f64) -> Vec3 {
+    /// At a time, as it is seen [m/s²].
+    pub fn at(&self, time: f64) -> Vec3 {
         let acceleration = self.acceleration.at(time);
         self.frame.as_ref().map_or(acceleration, |frame| frame.direction_to_frame(time, acceleration))
     }

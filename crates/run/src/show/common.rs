@@ -8,7 +8,7 @@ use souple_mesh::BoundingBox;
 use souple_table::four_digits;
 
 use super::figure::{Arrows, Figure, Floor, Foot};
-use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
+use super::{BLOOD, BodyMoment, Moment, Show, ShowError, Stage, vectors};
 use crate::links::{LINK_STATE, RADIUS};
 
 /// Camera, colours and sizes.
@@ -400,6 +400,12 @@ impl BodyMoment {
     /// Of each point of a network whether it stands for ground or a wall, which nothing makes room for and which throws no shade.
     pub(super) fn grounds(&self) -> Vec<bool> {
         souple_scene::grounds(&self.mesh, self.radii().unwrap_or_default())
+    }
+
+    /// How thick blood lies on each point [m]; `None` where nothing bleeds.
+    pub(super) fn film(&self) -> Option<&[f64]> {
+        let field = self.point_fields.iter().find(|field| field.name == BLOOD)?;
+        (field.values.len() == self.positions.len()).then_some(field.values.as_slice())
     }
 
     /// Of each point that is a ball [m]; `None` where none is.

@@ -281,6 +281,7 @@ impl Figure {
     fn surfaces(&self, body: &BodyMoment, index: usize, common: &Common) -> Vec<Surface> {
         let quantity = self.quantity();
         let is_coloured = quantity.is_some();
+        let film = body.film().filter(|_| quantity.as_ref().is_some_and(Quantity::is_look));
         let values = quantity.as_ref().and_then(|quantity| quantity.at_points(body));
         // colours with a meaning of their own are not mixed between cells
         let by_cell = quantity.filter(|_| self.colours.own_range().is_some() && !body.is_of_edges());
@@ -292,6 +293,9 @@ impl Figure {
                 // no colour of the scale is what has no value
                 (None, None) if is_coloured => of.surface.paint = Paint::Plain(Colour::from_screen(NO_VALUE)),
                 (None, None) => of.surface.paint = Paint::Plain(colour_of(index, state)),
+            }
+            if let Some(film) = film {
+                of.cover(film);
             }
             of.surface
         };
@@ -498,11 +502,20 @@ impl Figure {
     }
 }
 
-/// What values are called where colours stand for kinds of elements: those there are, with how many.
+/// What values are called: where colours stand for kinds of elements, those there are, with how many; where they are how tissue looks,
+/// its states.
 fn names_of(colours: ColourMap, moment: &Moment) -> Vec<(f64, String)> {
-    if colours != ColourMap::Elements {
-        return Vec::new();
+    match colours {
+        ColourMap::Tissue => TISSUE_STATES.map(|(value, name)| (value, name.to_owned())).into(),
+        ColourMap::Elements => names_of_elements(moment),
+        _ => Vec::new(),
     }
+}
+
+/// Values of [`ColourMap::Tissue`] and what they are.
+const TISSUE_STATES: [(f64, &str); 3] = [(-1.0, "charred"), (0.0, "untouched"), (1.0, "pressed white")];
+
+fn names_of_elements(moment: &Moment) -> Vec<(f64, String)> {
     let mut counts = [0; ELEMENT_KINDS.len()];
     for cell in moment.bodies.iter().flat_map(|body| body.mesh.cells()) {
         counts[number_of(cell.kind)] += 1;

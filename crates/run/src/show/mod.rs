@@ -26,8 +26,8 @@ pub use common::{Common, Gathering};
 pub use figure::{Arrows, Figure, Floor, FrameAxes, Worn};
 pub use film::{FilmError, write_film};
 pub use gap::GAP;
-pub(crate) use quantity::TISSUE;
 pub use quantity::number_of;
+pub(crate) use quantity::{BLOOD, TISSUE};
 pub use reel::Reel;
 pub use stage::{Stage, obstacles_of};
 

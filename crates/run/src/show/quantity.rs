@@ -16,6 +16,9 @@ const ELEMENT: &str = "element";
 /// How a surface looks that whitens and burns.
 pub(crate) const TISSUE: &str = "tissue";
 
+/// How thick blood lies on it.
+pub(crate) const BLOOD: &str = "blood";
+
 /// The number of a kind among [`ELEMENT_KINDS`], which has one for linear and quadratic elements alike.
 pub fn number_of(kind: ElementKind) -> usize {
     let name = kind.corners().name().trim_end_matches(|letter: char| letter.is_ascii_digit());
@@ -63,7 +66,7 @@ impl<'a> Quantity<'a> {
 
     pub fn unit(&self) -> &'static str {
         match self.field {
-            "displacement" | super::GAP => "m",
+            "displacement" | BLOOD | super::GAP => "m",
             "velocity" => "m/s",
             "stress" | "von_mises" => "Pa",
             "strain_energy_density" => "J/m³",
@@ -72,6 +75,11 @@ impl<'a> Quantity<'a> {
             "burn" => "J/m²",
             _ => "",
         }
+    }
+
+    /// Whether it is how bodies look, with all that lies on them.
+    pub fn is_look(&self) -> bool {
+        self.field == TISSUE
     }
 
     /// A value for each point of a body; `None` where it has no such field.

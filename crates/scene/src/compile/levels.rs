@@ -256,7 +256,7 @@ pub fn add_dresses(draft: &mut Draft) {
         draft.bodies.iter().filter_map(|body| Some((body.spec.name.clone(), dress(draft, body)?))).collect();
     for (body, dress) in made {
         // all meshes stand at rest before a motion of the start moves them as one
-        let info = DressInfo { body, field: draft.model.fields.len(), dress: Arc::new(dress) };
+        let info = DressInfo { body, field: draft.model.fields.len(), dress: Arc::new(dress), marks: None };
         draft.state.fields.push(info.dress.start());
         draft.model.fields.push(Box::new(Worn(Arc::clone(&info.dress))));
         draft.dresses.push(info);

@@ -421,6 +421,11 @@ fn marks_of(probe: &Probe, body: &Placed, points: &[u32], draft: &Draft) -> Opti
         draft.log.add(Code::Conflict, &probe.site, message, "a body with `marks`");
         return None;
     };
+    if probe.quantity.build.is_of_blood() && !marks.marks.bleeds() {
+        let message = format!("the surface of body `{}` does not bleed", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `marks.bleeding`");
+        return None;
+    }
     let is_marked = |point: &u32| marks.marks.is_marked(*point as usize);
     let marked: Vec<u32> = points.iter().copied().filter(is_marked).collect();
     if marked.is_empty() {

@@ -3,6 +3,7 @@
 use souple_engine::{Configuration, Force, World};
 use souple_math::Vec3;
 use souple_models::loads::Attachments;
+use souple_models::marks::Mark;
 use souple_models::network::Constraints;
 
 use super::body::centre_of_mass;
@@ -32,8 +33,12 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
         PointQuantity::ContactTorque => moments(&contact_forces(part, Share::Total, world), part, world),
         PointQuantity::Penetration => return PointValues::Numbers(penetrations(part, world)),
         PointQuantity::ContactResidual => return PointValues::Numbers(residuals(part, world)),
-        PointQuantity::Whitening => return PointValues::Numbers(marks(part, world, |(white, _)| white)),
-        PointQuantity::Burn => return PointValues::Numbers(marks(part, world, |(_, dose)| dose)),
+        PointQuantity::Whitening => return PointValues::Numbers(marks(part, world, |mark| mark.whitening)),
+        PointQuantity::Burn => return PointValues::Numbers(marks(part, world, |mark| mark.dose)),
+        PointQuantity::Blood => return PointValues::Numbers(marks(part, world, |mark| mark.blood)),
+        PointQuantity::BloodVolume => {
+            return PointValues::Numbers(marks(part, world, |mark| mark.blood_volume));
+        }
         PointQuantity::Slip => {
             return PointValues::Numbers(of_attachments(part, world, Attachments::slip_of));
         }
@@ -58,9 +63,9 @@ fn constraint_forces(part: &Part, world: &World) -> Vec<Vec3> {
 }
 
 /// Of each row of the part that is on the surface of a body with marks, one of its marks.
-fn marks(part: &Part, world: &World, mark: fn((f64, f64)) -> f64) -> Vec<f64> {
+fn marks(part: &Part, world: &World, number: fn(Mark) -> f64) -> Vec<f64> {
     let Some((marks, points)) = &part.marks else { return Vec::new() };
-    points.iter().filter_map(|point| marks.marks_at(*point as usize, world).map(mark)).collect()
+    points.iter().filter_map(|point| marks.mark_at(*point as usize, world).map(number)).collect()
 }
 
 /// Of each row of the part the greatest number of the springs that attach it; zero where none does.

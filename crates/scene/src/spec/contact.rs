@@ -53,6 +53,13 @@ pub(super) const HEAT: Key = Key::number(
 )
 .or(Value::Number(0.0));
 
+pub(super) const TEARS_AT: Key = Key::number(
+    "tears_at",
+    "Pa",
+    Range::NOT_NEGATIVE,
+    "pressure at which it tears vessels, of a body whose `marks` bleed: a sharp tool's is low; that of `bleeding` where left out",
+);
+
 pub(super) const DETECT: Key = Key::new(
     "detect",
     Shape::Choice(&DETECTIONS),
@@ -211,6 +218,7 @@ pub(crate) static CONTACT: Keys = Keys::new(
         TANGENTIAL_STIFFNESS,
         THICKNESS,
         HEAT,
+        TEARS_AT,
         RESPONSE,
         FRACTION,
         RESIDUAL,
@@ -253,6 +261,8 @@ pub struct Contact {
     pub thickness: f64,
     /// Given to what is touched [W/m²].
     pub heat: f64,
+    /// [Pa]
+    pub tears_at: Option<f64>,
     /// Displacements in the place of the penalty.
     pub imposed: Option<Imposed>,
     pub site: Site,
@@ -304,6 +314,7 @@ impl Contact {
             tangential_stiffness: reader.maybe_number("tangential_stiffness"),
             thickness: reader.number("thickness"),
             heat: reader.number("heat"),
+            tears_at: reader.maybe_number("tears_at"),
             imposed,
             site: reader.site(),
         }

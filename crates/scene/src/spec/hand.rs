@@ -8,7 +8,7 @@ use souple_table::{Range, Value};
 use super::boundary::{MOTION, MotionSpec};
 use super::contact::{
     Contact, DAMPING, DETECT, Detect, FRACTION, FRICTION, HEAT, Imposed, PROGRESSIVE, RESIDUAL, RESPONSE,
-    TANGENTIAL_STIFFNESS, THICKNESS, WEIGH, Weighing,
+    TANGENTIAL_STIFFNESS, TEARS_AT, THICKNESS, WEIGH, Weighing,
 };
 use super::region::Region;
 use crate::diagnostic::Site;
@@ -47,6 +47,7 @@ static TOUCH: Keys = Keys::new(
         TANGENTIAL_STIFFNESS,
         THICKNESS,
         HEAT,
+        TEARS_AT,
         RESPONSE,
         FRACTION,
         RESIDUAL,
@@ -159,6 +160,7 @@ impl HandSpec {
                 tangential_stiffness: maybe("tangential_stiffness"),
                 thickness: number("thickness"),
                 heat: number("heat"),
+                tears_at: maybe("tears_at"),
                 imposed,
                 site: reader.site(),
             },

@@ -153,6 +153,8 @@ pub enum PointQuantity {
     Torn,
     Whitening,
     Burn,
+    Blood,
+    BloodVolume,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -243,6 +245,12 @@ impl Quantity {
     /// Whether it is of the marks on a surface.
     pub fn is_of_marks(&self) -> bool {
         matches!(self.subject, Subject::Points(PointQuantity::Whitening | PointQuantity::Burn))
+            || self.is_of_blood()
+    }
+
+    /// Whether it is of the blood on a surface.
+    pub fn is_of_blood(&self) -> bool {
+        matches!(self.subject, Subject::Points(PointQuantity::Blood | PointQuantity::BloodVolume))
     }
 
     /// Whether it is of contacts, of which a probe may choose one.
@@ -415,6 +423,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "heat per area that the surface of a body with `marks` has taken up from what burnt it",
         MARKS,
         points("J/m^2", Number, Mean, PointQuantity::Burn),
+    ),
+    &entry(
+        "blood",
+        "how thick blood lies on the surface of a body whose `marks` bleed, by volume for each area at rest",
+        MARKS,
+        points("m", Number, Mean, PointQuantity::Blood),
+    ),
+    &entry(
+        "blood_volume",
+        "the blood on the surface of a body whose `marks` bleed",
+        MARKS,
+        points("m^3", Number, Sum, PointQuantity::BloodVolume),
     ),
     &entry(
         "slip",

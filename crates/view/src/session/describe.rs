@@ -129,7 +129,7 @@ impl Stage {
             scale.map(|(map, (low, high))| json!({"colours": colours(map), "low": low, "high": high}));
         json!({
             "name": name, "title": build.title(self.session()), "summary": summary, "unit": build.unit,
-            "of": build.of(), "classes": classes, "scale": scale,
+            "of": build.of(), "classes": classes, "scale": scale, "over": build.over(),
             "is_here": build.is_in(self.session(), self.shown_to_keep()),
         })
     }

@@ -292,7 +292,13 @@ impl Stage {
             chosen.values().copied().collect::<BTreeSet<usize>>().into_iter().collect()
         };
         let Looks { fields, arrows, inside } = &self.looks;
-        Wanted { fields: all(fields), arrows: all(arrows), inside: !inside.is_empty() }
+        let mut chosen: Vec<usize> = all(fields);
+        let over: Vec<usize> =
+            chosen.iter().filter_map(|field| FIELDS.entries[*field].build.over()).collect();
+        chosen.extend(over);
+        chosen.sort_unstable();
+        chosen.dedup();
+        Wanted { fields: chosen, arrows: all(arrows), inside: !inside.is_empty() }
     }
 
     /// Steps a period, or breaks that off.

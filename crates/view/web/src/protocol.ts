@@ -80,6 +80,8 @@ export interface FieldInfo {
   classes: Class[] | null;
   /** The colours that its numbers stand for, which nobody chooses: how a surface looks; null: they are quantities, or classes. */
   scale: Scale | null;
+  /** The number of the field that comes along, of the blood that lies over how bodies look; null: none. */
+  over: number | null;
   /** Whether anything in the scene has it. */
   is_here: boolean;
 }

@@ -21,6 +21,7 @@ import {
 import type { Object3D } from "three";
 import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface } from "../protocol";
 import { Axes } from "./axes";
+import { layBlood } from "./blood";
 import { Facets } from "./facets";
 import { Inside } from "./inside";
 import type { Paint } from "./inside";
@@ -83,6 +84,7 @@ export class Body {
   private style: Style = "smooth";
   private dark = false;
   private hasValues = false;
+  private hasFilm = false;
   private shine = OWN;
   /** Seen itself, whatever skin it wears. */
   private isBare = false;
@@ -110,6 +112,8 @@ export class Body {
     };
     const geometry = made(["position", "normal", "color"], this.creased.sources.length);
     geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
+    const film = new BufferAttribute(new Float32Array(this.creased.sources.length), 1);
+    geometry.setAttribute("film", film.setUsage(DynamicDrawUsage));
     const material = new MeshPhysicalMaterial({
       color: BODY_COLOURS[index % BODY_COLOURS.length]!,
       ...OWN,
@@ -117,6 +121,7 @@ export class Body {
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
     });
+    layBlood(material);
     this.mesh = new Mesh(geometry, material);
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
@@ -191,8 +196,8 @@ export class Body {
     this.axes.setShown(shown);
   }
 
-  /** Colours by values; by its own colour for none. */
-  colourBy(values: Float32Array | undefined, { of, range, map, isLook }: Colouring): void {
+  /** Colours by values, with blood over them where any lies; by its own colour for none. */
+  colourBy(values: Float32Array | undefined, film: Float32Array | undefined, { of, range, map, isLook }: Colouring): void {
     const { material } = this.mesh;
     const shine = !values ? OWN : isLook ? WET : READ;
     if (material.vertexColors !== Boolean(values) || this.shine !== shine) {
@@ -202,6 +207,7 @@ export class Body {
       Object.assign(material, shine);
       material.needsUpdate = true;
     }
+    this.setFilm(film);
     this.setOfCells(of === "cells" && values !== undefined);
     const { sources, triangles } = this.creased;
     const count = triangles.length / 3;
@@ -349,6 +355,16 @@ export class Body {
       this.group.add(this.facets.mesh);
     }
     this.setVisible();
+  }
+
+  /** Thickness of the blood on points [m]; none. */
+  private setFilm(film: Float32Array | undefined): void {
+    const attribute = this.mesh.geometry.getAttribute("film");
+    const numbers = attribute.array as Float32Array;
+    if (film) this.creased.sources.forEach((point, own) => (numbers[own] = film[point] ?? 0));
+    else if (this.hasFilm) numbers.fill(0);
+    if (film || this.hasFilm) attribute.needsUpdate = true;
+    this.hasFilm = film !== undefined;
   }
 
   private moved(): void {

@@ -102,6 +102,8 @@ export class Picture {
   private bounds = new Box3();
   private colours: Float32Array = new Float32Array(3 * 256);
   private field = -1;
+  /** Of the blood over what it shows. */
+  private over = -1;
   /** Whether its colours are how bodies look. */
   private isLook = false;
   private of: FieldInfo["of"] = "points";
@@ -184,7 +186,7 @@ export class Picture {
     this.arrows.dispose();
     this.last = null;
     // a range that another world, or this one before, has widened tells nothing of this one
-    this.field = -1;
+    this.field = this.over = -1;
     this.meanings.begin(null);
     if (this.obstacles) {
       this.scene.remove(this.obstacles.group);
@@ -300,7 +302,7 @@ export class Picture {
       if (worn_by !== null) this.bodies[worn_by]?.setBare(isBare);
     }
     const colouring = { of: this.of, range: meanings.range, map: this.colours, isLook: this.isLook };
-    bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], colouring));
+    bodies.forEach(({ fields }, index) => this.bodies[index]?.colourBy(values[index], fields.get(this.over), colouring));
   }
 
   /** Colours by a field with this number; `map` is for quantities, classes and looks have colours of their own. */
@@ -308,6 +310,7 @@ export class Picture {
     const { classes = null, scale = null } = field ?? {};
     if (number !== this.field) this.meanings.begin(field ?? null);
     this.field = number;
+    this.over = field?.over ?? -1;
     this.isLook = scale !== null;
     this.light();
     this.isStale = true;
