@@ -19,6 +19,8 @@ pub struct Tool {
     pub stiffness: f64,
     /// Rows that it may meet.
     pub rows: Vec<u32>,
+    /// From when until when each of them is on a surface [s]; empty where all stay.
+    pub spans: Vec<[f64; 2]>,
     /// How a hand holds it that gives way, and what it meets between its rows; `None`: it meets these alone, and is where it is led to.
     pub held: Option<HeldTool>,
 }
@@ -30,6 +32,8 @@ pub struct HeldTool {
     pub places: Vec<Vec3>,
     /// Corners among its rows, in the order that turns left seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// From when until when each triangle is on a surface [s]; empty where all stay.
+    pub spans: Vec<[f64; 2]>,
     /// Coulomb's coefficient.
     pub friction: f64,
     /// [kg]
@@ -61,9 +65,21 @@ impl Tool {
             Some(row) if *row as usize >= row_count => {
                 Err(format!("there is no row {row}; the system has {row_count}"))
             }
-            Some(_) => self.held.as_ref().map_or(Ok(()), |held| held.check(self.rows.len())),
+            Some(_) => {
+                check_spans(&self.spans, self.rows.len(), "rows")?;
+                self.held.as_ref().map_or(Ok(()), |held| held.check(self.rows.len()))
+            }
         }
     }
+}
+
+/// # Errors
+/// There are some, and not as many as what they are of.
+fn check_spans(spans: &[[f64; 2]], count: usize, of: &str) -> Result<(), String> {
+    if spans.is_empty() || spans.len() == count {
+        return Ok(());
+    }
+    Err(format!("it is told {} spans of {count} {of}", spans.len()))
 }
 
 impl HeldTool {
@@ -76,6 +92,7 @@ impl HeldTool {
         if let Some(corner) = self.triangles.iter().flatten().find(|corner| **corner as usize >= row_count) {
             return Err(format!("a triangle has the corner {corner}; there are {row_count} rows"));
         }
+        check_spans(&self.spans, self.triangles.len(), "triangles")?;
         for place in &self.places {
             check_place("places", *place).map_err(|error| error.to_string())?;
         }

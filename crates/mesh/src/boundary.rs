@@ -107,13 +107,29 @@ impl Mesh {
     pub fn boundary_surface(&self) -> TriangleSurface {
         let mut triangles = Vec::new();
         let mut cells = Vec::new();
-        self.visit_boundary(&mut |cell, kind, nodes| {
-            for triangle in facet_triangles(kind, nodes) {
-                triangles.push(triangle);
-                cells.push(cell);
-            }
+        self.visit_boundary_triangles(&mut |cell, corners| {
+            cells.extend(corners.iter().map(|_| cell));
+            triangles.extend(corners);
         });
         TriangleSurface::from_mesh(&self.points, &triangles, cells)
+    }
+
+    /// Visits the triangles of each face of the boundary, or of each surface cell.
+    pub(crate) fn visit_boundary_triangles(&self, visit: &mut dyn FnMut(u32, Vec<[u32; 3]>)) {
+        self.visit_boundary(&mut |cell, kind, nodes| visit(cell, facet_triangles(kind, nodes)));
+    }
+
+    /// Visits the triangles of each face between two cells, the lower number first, which they face away from.
+    pub(crate) fn visit_inner_triangles(&self, visit: &mut dyn FnMut([u32; 2], Vec<[u32; 3]>)) {
+        let mut uses = self.face_uses();
+        uses.sort_unstable_by_key(|face| (face.key, face.cell, face.face));
+        let by_number = self.cells_by_number();
+        for same in uses.chunk_by(|a, b| a.key == b.key) {
+            let [first, second] = same else { continue };
+            let Some(view) = by_number.get(first.cell) else { continue };
+            let (kind, nodes) = view.face_nodes(first.face.into());
+            visit([first.cell, second.cell], facet_triangles(kind, &nodes.collect::<Vec<_>>()));
+        }
     }
 
     /// The edges of the elements on the boundary, or of surface cells, each once, as pairs of points: those of

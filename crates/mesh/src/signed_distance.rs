@@ -5,6 +5,7 @@
 
 use souple_math::Vec3;
 
+use crate::opening::opposite_triangles;
 use crate::surface::corner_angles;
 use crate::{Aabb, AabbTree, Feature, MeshError, TriangleSurface, closest_point_on_triangle};
 
@@ -41,14 +42,24 @@ impl SignedDistance {
     ///
     /// # Errors
     /// An edge that is not shared by exactly two triangles of opposite direction; a triangle without area.
-    pub fn new(mut surface: TriangleSurface) -> Result<Self, MeshError> {
-        if surface.triangles.is_empty() {
-            return Err(MeshError::NoCells);
-        }
+    pub fn new(surface: TriangleSurface) -> Result<Self, MeshError> {
         let not_manifold = |(_, forward, backward): &([u32; 2], u32, u32)| (*forward, *backward) != (1, 1);
         if let Some(([a, b], forward, backward)) = surface.edge_uses().into_iter().find(not_manifold) {
             return Err(MeshError::OpenSurface { a, b, forward, backward });
         }
+        Self::of_boundary(surface)
+    }
+
+    /// The same of the boundary of cells, parts of which may touch along edges: as many triangles run along an edge one way as the other.
+    /// Whichever bound the same matter there belong together.
+    ///
+    /// # Errors
+    /// An edge along which they do not; a triangle without area.
+    pub fn of_boundary(mut surface: TriangleSurface) -> Result<Self, MeshError> {
+        if surface.triangles.is_empty() {
+            return Err(MeshError::NoCells);
+        }
+        surface.check_closed()?;
         let reoriented = surface.enclosed_volume() < 0.0;
         if reoriented {
             for corners in &mut surface.triangles {
@@ -162,25 +173,6 @@ impl SignedDistance {
     pub fn contains(&self, point: Vec3) -> bool {
         self.tree.bounds().contains(point) && self.distance(point) < 0.0
     }
-}
-
-/// The triangle across each edge of each triangle, for a surface whose edges all have two.
-fn opposite_triangles(surface: &TriangleSurface) -> Vec<[u32; 3]> {
-    let mut edges: Vec<([u32; 2], u32, usize)> = Vec::with_capacity(3 * surface.triangles.len());
-    for (triangle, corners) in surface.triangles.iter().enumerate() {
-        for edge in 0..3 {
-            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
-            edges.push(([a.min(b), a.max(b)], triangle as u32, edge));
-        }
-    }
-    edges.sort_unstable();
-    let mut opposite = vec![[0; 3]; surface.triangles.len()];
-    for pair in edges.chunks_exact(2) {
-        let [(_, t, e), (_, u, f)] = [pair[0], pair[1]];
-        opposite[t as usize][e] = u;
-        opposite[u as usize][f] = t;
-    }
-    opposite
 }
 
 #[cfg(test)]

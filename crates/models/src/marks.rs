@@ -22,11 +22,12 @@
 
 mod blood;
 
+use std::iter::repeat;
 use std::sync::Arc;
 
 use souple_engine::{CommittedRows, Field, FieldState, FieldStep, Scratch, StepError};
 use souple_math::Vec3;
-use souple_mesh::TriangleSurface;
+use souple_mesh::{OpeningSurface, Span};
 
 pub use blood::BleedingLaw;
 
@@ -95,8 +96,8 @@ pub enum Sides {
 pub struct MarkedSurface<'a> {
     /// System of the body, and row of its first point there.
     pub place: [usize; 2],
-    /// Boundary of its mesh.
-    pub surface: &'a TriangleSurface,
+    /// What is ever on the boundary of its mesh.
+    pub surface: &'a OpeningSurface,
     /// Of the mesh.
     pub point_count: usize,
     pub sides: Sides,
@@ -131,10 +132,12 @@ pub struct Marks {
     node_of_point: Vec<Option<u32>>,
     /// Corners, which are nodes.
     triangles: Vec<[u32; 3]>,
+    /// When each of them is on the surface; empty where all always are.
+    spans: Vec<Span>,
     /// Triangles around each node: those of node `i` are `around[starts[i]..starts[i + 1]]`.
     around: Vec<u32>,
     starts: Vec<u32>,
-    /// A third of the triangles around each node, at rest [m²].
+    /// A third of the triangles around each node, at rest, when it first is on the surface [m²].
     areas: Vec<f64>,
     sides: Sides,
     law: MarkingLaw,
@@ -166,19 +169,16 @@ impl Marks {
     pub fn new(name: String, law: MarkingLaw, of: MarkedSurface) -> Self {
         let MarkedSurface { place: [system, first_row], surface, point_count, sides, tools, gashes } = of;
         let mut node_of_point = vec![None; point_count];
+        let areas = surface.first_point_areas();
+        let OpeningSurface { surface, spans } = surface;
         for (node, point) in surface.mesh_points.iter().enumerate() {
             node_of_point[*point as usize] = Some(node as u32);
         }
         let points = surface.mesh_points.clone();
         let triangles = surface.triangles.clone();
-        let mut areas = vec![0.0; points.len()];
         let mut about: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
         for (triangle, corners) in triangles.iter().enumerate() {
-            let third = surface.area_vector(triangle as u32).length() / 3.0;
-            for corner in corners {
-                areas[*corner as usize] += third;
-                about[*corner as usize].push(triangle as u32);
-            }
+            corners.iter().for_each(|corner| about[*corner as usize].push(triangle as u32));
         }
         let ends = about.iter().scan(0, |end, list| {
             *end += list.len() as u32;
@@ -193,6 +193,7 @@ impl Marks {
             points,
             node_of_point,
             triangles,
+            spans: spans.clone(),
             around,
             starts,
             areas,
@@ -247,10 +248,15 @@ impl Marks {
         positions[self.first_row + self.points[node as usize] as usize]
     }
 
-    /// Finds how the triangles stand, and the area around each node.
-    fn measure(&self, positions: &[Vec3], done: &mut Done) {
+    /// Finds how the triangles stand that are on the surface at a time [s], and the area around each node; others have none.
+    fn measure(&self, positions: &[Vec3], time: f64, done: &mut Done) {
         done.areas.fill(0.0);
-        for (corners, area_vector) in self.triangles.iter().zip(&mut done.area_vectors) {
+        let spans = self.spans.iter().copied().chain(repeat(Span::ALWAYS));
+        for ((corners, area_vector), span) in self.triangles.iter().zip(&mut done.area_vectors).zip(spans) {
+            *area_vector = Vec3::ZERO;
+            if !span.holds(time) {
+                continue;
+            }
             let [a, b, c] = corners.map(|node| self.place(node, positions));
             *area_vector = (b - a).cross(c - a) * 0.5;
             let third = area_vector.length() / 3.0;
@@ -268,8 +274,8 @@ impl Marks {
         around.iter().map(facing).sum::<f64>() / 3.0
     }
 
-    fn look(&self, rows: CommittedRows, done: &mut Done) {
-        self.measure(&rows.of(self.system).positions, done);
+    fn look(&self, rows: CommittedRows, time: f64, done: &mut Done) {
+        self.measure(&rows.of(self.system).positions, time, done);
         done.pressures.fill(0.0);
         done.heated.fill(0.0);
         done.torn.fill(false);
@@ -383,7 +389,7 @@ impl Field for Kept {
     ) -> Result<(), StepError> {
         let marks = &*self.0;
         let Some(done) = scratch.downcast_mut::<Done>() else { unreachable!("its own scratch") };
-        marks.look(rows, done);
+        marks.look(rows, step.start + step.timestep, done);
         let (whitening, others) = field.values.split_at_mut(marks.points.len());
         for (node, (whitening, dose)) in whitening.iter_mut().zip(others).enumerate() {
             *whitening = marks.law.whitened(*whitening, done.pressures[node], step.timestep);
@@ -396,10 +402,11 @@ impl Field for Kept {
     }
 
     fn bytes(&self, scratch: &Scratch) -> usize {
-        let Marks { points, node_of_point, triangles, around, starts, areas, .. } = &*self.0;
+        let Marks { points, node_of_point, triangles, spans, around, starts, areas, .. } = &*self.0;
         let constant = 4 * (points.capacity() + around.capacity() + starts.capacity())
             + 8 * (node_of_point.capacity() + areas.capacity())
-            + 12 * triangles.capacity();
+            + 12 * triangles.capacity()
+            + size_of::<Span>() * spans.capacity();
         let of_scratch = scratch.downcast_ref::<Done>().map_or(0, |done| {
             25 * done.pressures.capacity() + 24 * done.area_vectors.capacity() + done.running.bytes()
         });
@@ -409,6 +416,8 @@ impl Field for Kept {
 
 #[cfg(test)]
 mod tests {
+    use souple_mesh::TriangleSurface;
+
     use super::*;
 
     const LAW: MarkingLaw = MarkingLaw {
@@ -423,6 +432,7 @@ mod tests {
     fn marks_of(surface: &TriangleSurface, law: MarkingLaw) -> Marks {
         let point_count = surface.mesh_points.iter().max().map_or(0, |most| *most as usize + 1);
         let (tools, gashes) = (Vec::new(), Vec::new());
+        let surface = &OpeningSurface::from(surface.clone());
         let of = MarkedSurface { place: [0, 5], surface, point_count, sides: Sides::Outer, tools, gashes };
         Marks::new("marks".to_owned(), law, of)
     }
@@ -447,7 +457,11 @@ mod tests {
     /// The look goes from white through what it was to charred, and stays within.
     #[test]
     fn burns_hide_whitening() {
-        let surface = TriangleSurface { mesh_points: vec![3, 1], ..TriangleSurface::default() };
+        let surface = TriangleSurface {
+            points: vec![Vec3::ZERO; 2],
+            mesh_points: vec![3, 1],
+            ..TriangleSurface::default()
+        };
         let marks = marks_of(&surface, LAW);
         assert_eq!(
             [4, 5, 6, 7, 8, 9].map(|row| marks.node_of_row(row)),
@@ -469,7 +483,8 @@ mod tests {
     /// Numbers read from a file that are no marks are refused.
     #[test]
     fn only_marks_are_accepted() {
-        let surface = TriangleSurface { mesh_points: vec![0], ..TriangleSurface::default() };
+        let surface =
+            TriangleSurface { points: vec![Vec3::ZERO], mesh_points: vec![0], ..TriangleSurface::default() };
         let accepts = |law: MarkingLaw, values: &[f64]| {
             let marks = marks_of(&surface, law);
             let current = marks.start();

@@ -359,7 +359,7 @@ fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
         let from = if first == 0 { &low } else { &above };
         moved.points = surface.mesh_points.iter().map(|point| from[*point as usize]).collect();
         let rows: Vec<u32> = surface.mesh_points.iter().map(|point| first + point).collect();
-        ContactSurface { surface: moved, shares: vec![1.0; rows.len()], rows }
+        ContactSurface { surface: moved.into(), shares: vec![1.0; rows.len()], rows, later: Vec::new() }
     };
     let held = |first: u32| {
         // nodes of a body hold together by springs to where they stand
@@ -410,9 +410,10 @@ fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
         burn_dose: 1e3,
         bleeding: Some(bleeding),
     };
+    let opening = surface.clone().into();
     let marked = MarkedSurface {
         place: [0, 0],
-        surface: &surface,
+        surface: &opening,
         point_count: count,
         sides: Sides::Outer,
         tools: vec![Tool { contact: "ground".into(), heat: 1.0, tears_at: None }],

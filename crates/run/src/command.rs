@@ -31,11 +31,11 @@ pub fn command_to_json(command: &Command) -> Value {
             })
         }
         Edit::Touch { system, hand, tool } => {
-            let Tool { shape, values, place, stiffness, rows, held } = tool;
+            let Tool { shape, values, place, stiffness, rows, spans, held } = tool;
             json!({
                 "kind": "touch", "system": system, "hand": hand, "shape": shape, "values": values,
                 "place": place.to_array(), "stiffness": stiffness, "rows": rows,
-                "held": held.as_ref().map(held_tool_to_json),
+                "spans": spans_to_json(spans), "held": held.as_ref().map(held_tool_to_json),
             })
         }
         Edit::MoveHand { system, hand, place } => {
@@ -98,6 +98,7 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
                 place: vector("place")?,
                 stiffness: number("stiffness")?,
                 rows: rows.ok_or("`rows` of a command holds something that is not a row")?,
+                spans: spans_from_json(&edit["spans"])?,
                 held: if edit["held"].is_null() { None } else { Some(held_tool_from_json(&edit["held"])?) },
             };
             Edit::Touch { system, hand: index("hand")?, tool }
@@ -117,10 +118,10 @@ fn vector_of(value: &Value, key: &str) -> Result<Vec3, String> {
 }
 
 fn held_tool_to_json(held: &HeldTool) -> Value {
-    let HeldTool { places, triangles, friction, mass, spring, damper, limit } = held;
+    let HeldTool { places, triangles, spans, friction, mass, spring, damper, limit } = held;
     json!({
         "places": places.iter().map(|place| place.to_array()).collect::<Vec<_>>(), "triangles": triangles,
-        "friction": friction, "mass": mass, "spring": spring, "damper": damper, "limit": limit,
+        "spans": spans_to_json(spans), "friction": friction, "mass": mass, "spring": spring, "damper": damper, "limit": limit,
     })
 }
 
@@ -134,12 +135,34 @@ fn held_tool_from_json(value: &Value) -> Result<HeldTool, String> {
     Ok(HeldTool {
         places: list("places")?.iter().map(|place| vector_of(place, "places")).collect::<Result<_, _>>()?,
         triangles: triangles.ok_or("`triangles` of a held tool holds something that is not three corners")?,
+        spans: spans_from_json(&value["spans"])?,
         friction: number("friction")?,
         mass: number("mass")?,
         spring: number("spring")?,
         damper: number("damper")?,
         limit: number("limit")?,
     })
+}
+
+/// `[from, until]` of each, null where it is there from ever or for ever.
+fn spans_to_json(spans: &[[f64; 2]]) -> Value {
+    let date = |date: f64| if date.is_finite() { json!(date) } else { Value::Null };
+    spans.iter().map(|[from, until]| json!([date(*from), date(*until)])).collect()
+}
+
+/// # Errors
+/// Something is no pair of dates. A recording of before surfaces opened has none.
+fn spans_from_json(value: &Value) -> Result<Vec<[f64; 2]>, String> {
+    let Some(spans) = value.as_array() else {
+        return if value.is_null() { Ok(Vec::new()) } else { Err("`spans` of a tool is no list".to_owned()) };
+    };
+    let date = |date: &Value, open: f64| if date.is_null() { Some(open) } else { date.as_f64() };
+    let span = |span: &Value| match span.as_array()?.as_slice() {
+        [from, until] => Some([date(from, f64::NEG_INFINITY)?, date(until, f64::INFINITY)?]),
+        _ => None,
+    };
+    let spans: Option<Vec<[f64; 2]>> = spans.iter().map(span).collect();
+    spans.ok_or_else(|| "`spans` of a tool holds something that is not two dates".to_owned())
 }
 
 /// `[row, share, offset]`.
@@ -190,6 +213,7 @@ mod tests {
                     place: Vec3::new(0.1, 0.7, -1.0 / 3.0),
                     stiffness: 1e3 / 7.0,
                     rows: vec![0, 7, 3],
+                    spans: Vec::new(),
                     held: None,
                 },
             },
@@ -202,9 +226,11 @@ mod tests {
                     place: Vec3::X,
                     stiffness: 1e3 / 7.0,
                     rows: vec![0, 7, 3],
+                    spans: vec![[f64::NEG_INFINITY, f64::INFINITY], [0.1 / 3.0, f64::INFINITY], [0.0, 0.7]],
                     held: Some(HeldTool {
                         places: vec![Vec3::ZERO, Vec3::X * (1.0 / 3.0), Vec3::Y],
                         triangles: vec![[0, 1, 2]],
+                        spans: vec![[f64::NEG_INFINITY, 0.7]],
                         friction: 0.3,
                         mass: 0.1 / 3.0,
                         spring: 270.0,

@@ -265,9 +265,9 @@ pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
 /// A display surface as it stands: its triangles, displacements, levels, normals and the marks that are carried over to it.
 pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
     let mut mesh = Mesh { points: info.points(world), ..Mesh::default() };
-    let triangles = info.dress.triangles();
+    let triangles = info.dress.triangles(world.time());
     triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
-    let normals = souple_mesh::vertex_normals(&mesh.points, triangles);
+    let normals = souple_mesh::vertex_normals(&mesh.points, &triangles);
     let moved = mesh.points.iter().zip(info.dress.rest()).map(|(x, rest)| *x - *rest);
     let displacements: Vec<Vec3> = moved.collect();
     let mut fields = vec![

@@ -17,7 +17,7 @@ use crate::machine::peak_bytes;
 use crate::monitor::{Grown, Monitor};
 use crate::recording::{Recording, add_hash};
 use crate::report::{AroundSteps, Report, SkinChange, Status, attachments, counts, skins};
-use crate::show::{MOST_GROWTH, growth};
+use crate::show::{MOST_GROWTH, growth, growth_of_cells};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::wavering::Wavering;
 use crate::{Options, RunError, forecast_warnings};
@@ -214,7 +214,11 @@ impl Session {
     pub fn check_growth(&self) -> Result<(), RunError> {
         for body in self.bodies.iter().filter(|body| solid_of(self.world.model(), body).is_some()) {
             let positions = &self.world.rows(body.system).positions[body.rows.clone()];
-            let growth = growth(&body.mesh.points, positions);
+            let growth = if body.cut_at.is_empty() {
+                growth(&body.mesh.points, positions)
+            } else {
+                growth_of_cells(&body.mesh, positions, |cell| body.is_whole(cell, self.world.time()))
+            };
             if growth > MOST_GROWTH {
                 let stability = self.world.model().systems[body.system].stepper.stability();
                 return Err(RunError::BlownUp { body: body.name.clone(), growth, stability });

@@ -4,6 +4,7 @@
 mod adapting;
 mod crowds;
 mod cut_open;
+mod cut_touch;
 mod hands;
 mod kneaded;
 mod levels_resume;

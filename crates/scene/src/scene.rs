@@ -11,7 +11,7 @@ use souple_engine::{Census, FieldState, InHand, Levels, Model, State, UnknownKin
 use souple_formal::Formula;
 use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
-use souple_mesh::{Mesh, TriangleSurface};
+use souple_mesh::{Mesh, OpeningSurface};
 use souple_models::frames::{Carried, FramesReport};
 use souple_models::marks::{Mark, Marks};
 use souple_models::materials::Material;
@@ -78,8 +78,8 @@ pub struct BodyInfo {
     pub own: Option<OwnRows>,
     /// At rest, placed; point `i` is row `rows.start + i`. Shared with what is shown of it.
     pub mesh: Arc<Mesh>,
-    /// The boundary of the mesh.
-    pub surface: TriangleSurface,
+    /// What is ever on the boundary of the mesh: of one that is cut, from and until its dates.
+    pub surface: OpeningSurface,
     /// When each cell of the mesh is cut [s], never where that is infinite; empty of a body that nothing cuts.
     pub cut_at: Vec<f64>,
     /// Name of its elastic force.
@@ -437,10 +437,10 @@ impl BodyInfo {
         Some(census(world, self.system, &self.force)?.active.len())
     }
 
-    pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
+    pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>, cut_at: Vec<f64>) -> Self {
         let Placed { spec, system, rows, mesh, frames, reduced, materials, hanging, .. } = placed;
         let laws = LawsInfo::new(spec, materials);
-        let surface = mesh.boundary_surface();
+        let surface = mesh.opening_surface(&cut_at);
         let force = crate::compile::solid_name(&spec.name);
         let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown);
         let frames = frames.map(|frames| {
@@ -470,7 +470,7 @@ impl BodyInfo {
             own,
             mesh,
             surface,
-            cut_at: Vec::new(),
+            cut_at,
             force,
             laws,
             frames,

@@ -108,6 +108,7 @@ chain = true
     let held = HeldTool {
         places: vec![Vec3::ZERO, Vec3::Z, Vec3::X],
         triangles: vec![[0, 1, 2]],
+        spans: Vec::new(),
         friction: 0.3,
         mass: 0.03,
         spring: 300.0,
@@ -120,6 +121,7 @@ chain = true
         place: Vec3::new(0.3, 0.5, 0.3),
         stiffness: 100.0,
         rows: vec![0, 1, 2],
+        spans: Vec::new(),
         held: Some(held),
     };
     let mut world = new();

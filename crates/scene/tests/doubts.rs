@@ -495,3 +495,24 @@ fn who_holds_points_already_is_told() {
     let pushes = LEFT.replace(", response = \"imposed\"", "");
     assert_eq!(told(&format!("{PRESSED}{pushes}")), Vec::<String>::new());
 }
+
+/// A cut through all cells of a body leaves nothing that could be seen or touched, which is told; one through some of them is not.
+#[test]
+fn cuts_through_everything_are_told() {
+    let body = |region: &str, time: &str| {
+        let text = BAR
+            .replace("\"backward_euler\"", "{ name = \"staggered\", halvings = 9 }")
+            .replace("hex8", "tet4")
+            .replace("neo_hookean", "stable_neo_hookean");
+        let cuts = format!(
+            "[bodies.bar.levels]\ncount = 1\ncuts = [{{ region = {region} }}, {{ region = {{ box = [[0.4, -1, -1], [2, 2, 2]] }}{time} }}]\n"
+        );
+        text + &cuts
+    };
+    assert_eq!(warnings(&body("{ box = [[0.4, -1, -1], [0.8, 1, 1]] }", "")), Vec::<String>::new());
+    let said = warnings(&body("{ box = [[-1, -1, -1], [0.6, 1, 1]] }", ", time = 0.3"));
+    assert!(
+        said.iter().any(|told| told.contains("through all of its") && told.contains("from 0.3 s on")),
+        "{said:?}"
+    );
+}

@@ -31,6 +31,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("crane", include_str!("../../../scenes/crane/scene.toml")),
     ("crooked_patch", include_str!("../../../scenes/crooked_patch/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
+    ("cut_touched", include_str!("../../../scenes/cut_touched/scene.toml")),
     ("deformable_primitive", include_str!("../../../scenes/deformable_primitive/scene.toml")),
     ("dough", include_str!("../../../scenes/dough/scene.toml")),
     ("drops_on_a_floor", include_str!("../../../scenes/drops_on_a_floor/scene.toml")),

@@ -226,7 +226,7 @@ impl Field {
         links: &[LinkShown],
     ) -> Option<Read> {
         let world = &session.world;
-        let points = &shown.points[..shown.count(with_inside)];
+        let points = shown.points_at(world.time(), with_inside);
         match self.source {
             Source::Point(value) => {
                 let value = |point: &u32| value(world, body, *point as usize) as f32;
@@ -250,7 +250,12 @@ impl Field {
             }
             Source::Cells(value) => {
                 let (solid, at) = world.force_named(body.system, &body.force)?;
-                let of_cell = |cell: &u32| Some(value(&solid.cell_field_at(*cell as usize, &at)?));
+                // what is cut carries nothing that those beside it could be mixed with
+                let is_whole = |cell: u32| body.is_whole(cell as usize, world.time());
+                let of_cell = |cell: &u32| {
+                    let value = value(&solid.cell_field_at(*cell as usize, &at)?);
+                    Some(if is_whole(*cell) { value } else { f64::NAN })
+                };
                 let about = shown.cells_about(body, with_inside);
                 let values: Option<Vec<f64>> = about.cells.par_iter().map(of_cell).collect();
                 Some(Read::OfCells(values?))
@@ -261,7 +266,7 @@ impl Field {
             Source::Classes(_) if shown.triangles.is_empty() => None,
             Source::Classes(classes) => {
                 let of_cells = (classes.of)(session, body)?;
-                let outer = body.surface.cells.iter().map(|cell| of_cells[*cell as usize]);
+                let outer = body.surface.surface.cells.iter().map(|cell| of_cells[*cell as usize]);
                 let inner = if with_inside { &of_cells[..] } else { &[] };
                 let numbers = outer.chain(inner.iter().copied()).map(|class| class as f32);
                 Some(Read::Numbers(numbers.collect()))

@@ -21,6 +21,7 @@ use crate::loads::{LoadError, Pose, RigidMotion, not_negative};
 use super::carrier::Carrier;
 use super::clip::{Inside, inside};
 use super::leading::Leading;
+use super::opening::Openings;
 use super::shape::Capsule;
 use super::{Shape, ToolSurface};
 
@@ -58,6 +59,7 @@ pub struct ImposedContact {
     corners: Vec<[u32; 3]>,
     /// Places at the start, for the first search.
     tree: AabbTree,
+    openings: Openings,
     /// Between two looks [s].
     period: f64,
 }
@@ -199,6 +201,8 @@ impl ImposedContact {
         if shape.parts().is_empty() {
             return Err(LoadError::Empty { field: "shape", expected: "rounded part of a tool" });
         }
+        let openings = Openings::new(&surface, &rows);
+        let surface = surface.surface;
         let triangles = 0..surface.triangles.len() as u32;
         if triangles.clone().map(|triangle| surface.area_vector(triangle).length()).sum::<f64>() <= 0.0 {
             return Err(LoadError::Empty { field: "triangles", expected: "triangle of an area" });
@@ -218,6 +222,7 @@ impl ImposedContact {
             corners: surface.triangles.iter().map(|corners| corners.map(number)).collect(),
             rows: all,
             tree: AabbTree::build(&boxes),
+            openings,
             period,
         })
     }
@@ -312,14 +317,20 @@ impl Holding for ImposedContact {
     fn look(&self, at: &Configuration, scratch: &mut Scratch, memory: &mut [f64]) {
         let pose = self.leading.pose(at.time, self.own(at.memory));
         let Search { tree, found, weights } = search(scratch);
-        tree.refit((0..self.corners.len()).map(|triangle| Aabb::of(self.places(triangle, at))));
+        let is_there = |triangle: usize| self.openings.has(triangle, at.time);
+        tree.refit((0..self.corners.len()).map(|triangle| {
+            // what is not there has no box that anything could overlap
+            let places = is_there(triangle).then(|| self.places(triangle, at));
+            places.map_or(Aabb::EMPTY, Aabb::of)
+        }));
         weights.fill(0.0);
         (memory[JUMP], memory[IS_MADE]) = (0.0, 0.0);
         for number in 0..self.rows.len() {
             let force = self.node(at.memory, number).force;
             self.write_node(memory, number, &Node { force, ..Node::default() });
         }
-        for (triangle, corners) in self.corners.iter().enumerate() {
+        for (triangle, corners) in self.corners.iter().enumerate().filter(|(triangle, _)| is_there(*triangle))
+        {
             let [a, b, c] = self.places(triangle, at);
             let third = (b - a).cross(c - a).length() / 6.0;
             for number in corners {
@@ -513,7 +524,7 @@ impl Force for ImposedContact {
     }
 
     fn bytes(&self) -> usize {
-        12 * self.corners.capacity() + 4 * self.rows.capacity() + self.tree.bytes()
+        12 * self.corners.capacity() + 4 * self.rows.capacity() + self.openings.bytes() + self.tree.bytes()
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {

@@ -45,7 +45,7 @@ impl Setting {
     fn of(shape: Box<dyn Shape>, motion: &str, law: ImposedLaw) -> Self {
         let surface = triangles();
         let positions = surface.points.clone();
-        let touched = ToolSurface { surface, rows: (0..6).collect() };
+        let touched = ToolSurface { surface: surface.into(), rows: (0..6).collect() };
         let contact = ImposedContact::new("tool", touched, shape, led(motion), law, PERIOD).unwrap();
         let mut memory = vec![0.0; contact.memory_len()];
         contact.initial_memory(&mut memory);
@@ -196,7 +196,7 @@ fn penalties_weigh_areas_or_alike() {
     let force = |centre: Vec3, is_alike: bool| {
         let surface = triangles();
         let positions = surface.points.clone();
-        let touched = ToolSurface { surface, rows: (0..6).collect() };
+        let touched = ToolSurface { surface: surface.into(), rows: (0..6).collect() };
         let shape: Box<dyn Shape> = Box::new(Sphere::new(centre, 0.25));
         let contact =
             ToolContact::new("tool", touched, shape, RigidMotion::default(), law, [0.1, PERIOD]).unwrap();
@@ -248,7 +248,7 @@ fn areas_count_once() {
 fn laws_fit_the_tool() {
     let new = |law| {
         let surface = triangles();
-        let touched = ToolSurface { surface, rows: (0..6).collect() };
+        let touched = ToolSurface { surface: surface.into(), rows: (0..6).collect() };
         ImposedContact::new("tool", touched, Box::new(ball()), led("[0, 0, 0]"), law, PERIOD)
     };
     assert!(

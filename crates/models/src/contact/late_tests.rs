@@ -151,7 +151,7 @@ fn shot(detection: Detection, motion: &str) -> World {
         })
         .collect();
     let surface = souple_mesh::TriangleSurface::new(points.clone(), triangles).unwrap();
-    let touched = ToolSurface { surface, rows: (0..points.len() as u32).collect() };
+    let touched = ToolSurface { surface: surface.into(), rows: (0..points.len() as u32).collect() };
     let translation = Some(Arc::new(FormulaVector::compile(motion).unwrap()) as _);
     let led = RigidMotion { translation, ..RigidMotion::default() };
     let law = ContactLaw { stiffness: 200.0, friction: 0.3, tangential_stiffness: 100.0, ..LAW };

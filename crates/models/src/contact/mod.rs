@@ -14,6 +14,7 @@ mod imposed_tests;
 mod late_tests;
 pub mod law;
 mod leading;
+mod opening;
 #[cfg(test)]
 mod pair_tests;
 pub mod shape;
@@ -28,6 +29,7 @@ mod tool_tests;
 pub use carrier::{Carrier, Pressed};
 pub use imposed::{Displacing, ImposedContact, ImposedLaw};
 pub use law::{ContactForce, ContactLaw, penalty_stiffness};
+pub use opening::Shares;
 pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};
 pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};

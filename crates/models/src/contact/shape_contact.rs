@@ -4,6 +4,9 @@
 //! within an implicit step of any length is answered in that step, and the matrix keeps its pattern (a block
 //! per point) whatever comes and goes.
 //!
+//! Where the surface of the body opens, the shares of its points change at the dates at which it does; a point without a share
+//! touches nothing.
+//!
 //! What pushes on a shape that rows bear, such as the skin of a body, comes to these rows in the next step: so the momentum
 //! returns exactly, one step late, and no point is tied to rows that are others at every moment, see `burden`.
 
@@ -23,6 +26,7 @@ use super::burden::{self, Push};
 use super::carrier::{Carrier, Pressed};
 use super::law::Approach;
 use super::leading::Leading;
+use super::opening::{Shares, shares_at};
 use super::{ContactForce, ContactLaw, Nearest, Shape};
 use crate::loads::{Pose, RigidMotion};
 
@@ -30,7 +34,7 @@ use crate::loads::{Pose, RigidMotion};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     pub row: u32,
-    /// Its part of the law's stiffness: 1, or its area over the mean area.
+    /// Its part of the law's stiffness at the start: 1, or its area over the mean area.
     pub share: f64,
     /// Where it is at the start [m]: the first anchor.
     pub start: Vec3,
@@ -41,6 +45,8 @@ pub struct ContactPoint {
 pub struct ShapeContact {
     name: String,
     points: Vec<ContactPoint>,
+    /// Their shares from dates on at which the surface opens, ascending.
+    later: Vec<Shares>,
     /// Their rows ascend, each once.
     ascends: bool,
     shape: Box<dyn Shape>,
@@ -73,6 +79,7 @@ const SHARED_FROM: usize = 1024;
 struct Local {
     approach: Approach<f64>,
     nearest: Nearest,
+    share: f64,
 }
 
 impl ShapeContact {
@@ -120,7 +127,8 @@ impl ShapeContact {
         }
         law.check()?;
         let ascends = points.is_sorted_by(|a, b| a.row < b.row);
-        Ok(Self { shape_name: name.clone(), name, points, ascends, shape, leading, law })
+        let later = Vec::new();
+        Ok(Self { shape_name: name.clone(), name, points, later, ascends, shape, leading, law })
     }
 
     /// Where the shape is.
@@ -136,10 +144,10 @@ impl ShapeContact {
     /// What the points do to the shape, were it there.
     fn pressed(&self, pose: &Pose, at: &Configuration) -> Pressed {
         let mut pressed = Pressed::default();
-        for (point, local) in self.touching(pose, at) {
-            if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
+        for (_, local) in self.touching(pose, at) {
+            if let Some(force) = self.law.force(local.share, &local.approach, |number| number) {
                 pressed.force -= pose.direction_to_world(force.total());
-                pressed.stiffness += self.law.stiffest() * point.share;
+                pressed.stiffness += self.law.stiffest() * local.share;
             }
         }
         pressed
@@ -148,8 +156,7 @@ impl ShapeContact {
     /// On a point [N]; none where it does not touch.
     fn force_on(&self, index: usize, pose: &Pose, at: &Configuration) -> Vec3 {
         let local = self.local(index, pose, at).filter(|local| local.approach.gap < 0.0);
-        let share = self.points[index].share;
-        let force = local.and_then(|local| self.law.force(share, &local.approach, |number| number));
+        let force = local.and_then(|local| self.law.force(local.share, &local.approach, |number| number));
         force.map_or(Vec3::ZERO, |force| pose.direction_to_world(force.total()))
     }
 
@@ -178,6 +185,33 @@ impl ShapeContact {
         );
     }
 
+    /// With other shares of its points from dates on, at which their surface opens; in the order of the dates.
+    ///
+    /// # Errors
+    /// There are not as many as points, or a number does not fit.
+    pub fn opening(self, later: Vec<Shares>) -> Result<Self, LoadError> {
+        for shares in &later {
+            let (found, expected) = (shares.of_points.len(), self.points.len());
+            if found != expected {
+                return Err(LoadError::Count {
+                    field: "shares",
+                    found,
+                    expected,
+                    of: "the contact's points",
+                });
+            }
+            for (index, share) in shares.of_points.iter().enumerate() {
+                not_negative(format!("shares[{index}]"), *share)?;
+            }
+        }
+        Ok(Self { later, ..self })
+    }
+
+    /// The part of the law's stiffness that a point has at a time [s].
+    fn share(&self, index: usize, time: f64) -> f64 {
+        shares_at(&self.later, time).map_or(self.points[index].share, |shares| shares[index])
+    }
+
     /// With the name of the shape, by which one that several bodies touch is known as one.
     pub fn against(self, shape_name: impl Into<String>) -> Self {
         Self { shape_name: shape_name.into(), ..self }
@@ -201,7 +235,7 @@ impl ShapeContact {
         let pose = self.pose(at);
         let touch = move |(index, point): (usize, &ContactPoint)| {
             let local = self.local(index, &pose, at)?;
-            let force = self.law.force(point.share, &local.approach, |number| number)?;
+            let force = self.law.force(local.share, &local.approach, |number| number)?;
             let [normal, friction, stretch] =
                 [force.normal, force.friction, force.stretch].map(|vector| pose.direction_to_world(vector));
             Some(Touch {
@@ -228,6 +262,11 @@ impl ShapeContact {
 
     /// The same with the anchor given, in the shape's place [m].
     fn local_from(&self, anchor: Vec3, index: usize, pose: &Pose, at: &Configuration) -> Option<Local> {
+        let share = self.share(index, at.time);
+        // what is not on the surface touches nothing
+        if share == 0.0 {
+            return None;
+        }
         let row = self.points[index].row as usize;
         let position = pose.to_shape(at.positions[row]);
         let nearest = self.shape.nearest_in(at, position, self.law.thickness)?;
@@ -240,7 +279,7 @@ impl ShapeContact {
             from_anchor: position - anchor,
             velocity: pose.velocity_to_shape(at.positions[row], at.velocities[row] - under),
         };
-        Some(Local { approach, nearest })
+        Some(Local { approach, nearest, share })
     }
 
     /// The velocity of those that bear the shape at a point of it [m/s].
@@ -255,7 +294,7 @@ impl ShapeContact {
     /// What the points do to the bearers.
     fn burden(&self, pose: &Pose, at: &Configuration, out: &mut [f64]) {
         let push = |(point, local): (&ContactPoint, Local)| {
-            let force = self.law.force(point.share, &local.approach, |number| number)?;
+            let force = self.law.force(local.share, &local.approach, |number| number)?;
             let place = at.positions[point.row as usize];
             let force = pose.direction_to_world(force.total());
             Some(Push { force, at: place, in_shape: pose.to_shape(place) })
@@ -270,8 +309,8 @@ impl ShapeContact {
     }
 
     /// Change of the force on a touching point for changes of its position and velocity.
-    fn change(&self, share: f64, local: &Local, pose: &Pose, position: Vec3, velocity: Vec3) -> Vec3 {
-        let Local { approach, nearest } = local;
+    fn change(&self, local: &Local, pose: &Pose, position: Vec3, velocity: Vec3) -> Vec3 {
+        let Local { approach, nearest, share } = local;
         let moved = pose.direction_to_shape(position);
         let gap = Dual::new(approach.gap, nearest.normal.dot(moved));
         let dual = Approach {
@@ -280,7 +319,7 @@ impl ShapeContact {
             from_anchor: dual(approach.from_anchor, moved),
             velocity: dual(approach.velocity, pose.velocity_change_to_shape(position, velocity)),
         };
-        let force = self.law.force(share, &dual, |number: Dual| number.value);
+        let force = self.law.force(*share, &dual, |number: Dual| number.value);
         force.map_or(Vec3::ZERO, |force| pose.direction_to_world(derivative(force.total())))
     }
 
@@ -351,8 +390,7 @@ impl Force for ShapeContact {
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let pose = self.pose(at);
-        let stored =
-            self.touching(&pose, at).map(|(point, local)| self.law.stored(point.share, &local.approach));
+        let stored = self.touching(&pose, at).map(|(_, local)| self.law.stored(local.share, &local.approach));
         Energy { stored: stored.sum(), dissipated: at.memory[0] }
     }
 
@@ -382,7 +420,7 @@ impl Force for ShapeContact {
         for (point, local) in self.touching(&pose, at) {
             let delta = delta[point.row as usize];
             let (position, velocity) = (delta * weights.position, delta * weights.velocity);
-            out[point.row as usize] += self.change(point.share, &local, &pose, position, velocity);
+            out[point.row as usize] += self.change(&local, &pose, position, velocity);
         }
     }
 
@@ -410,8 +448,7 @@ impl Force for ShapeContact {
     ) {
         let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
-            let column =
-                |e: Vec3| self.change(point.share, &local, &pose, e * weights.position, e * weights.velocity);
+            let column = |e: Vec3| self.change(&local, &pose, e * weights.position, e * weights.velocity);
             let block = Mat3::from_columns(column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
             add_block(matrix, point.row as usize, point.row as usize, &block);
         }
@@ -426,7 +463,7 @@ impl Force for ShapeContact {
     ) {
         let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
-            if let Some(stiffness) = self.law.lagged_stiffness(point.share, &local.approach) {
+            if let Some(stiffness) = self.law.lagged_stiffness(local.share, &local.approach) {
                 let block = pose.tensor_to_world(&stiffness.weighted(weights));
                 add_block(matrix, point.row as usize, point.row as usize, &block);
             }
@@ -448,9 +485,12 @@ impl Force for ShapeContact {
             let position = pose.to_shape(at.positions[point.row as usize]);
             let local = self.local_from(anchor, index, &pose, at);
             let (stretch, heat) = match &local {
-                Some(local) => self.law.advance(point.share, &local.approach, before, timestep),
+                Some(local) => self.law.advance(local.share, &local.approach, before, timestep),
                 // out of reach, so is whatever was stretched
-                None => (Vec3::ZERO, 0.5 * self.law.tangential_stiffness * point.share * before.length_sq()),
+                None => {
+                    let share = self.share(index, at.time);
+                    (Vec3::ZERO, 0.5 * self.law.tangential_stiffness * share * before.length_sq())
+                }
             };
             // what sticks to something that is borne goes with it
             let sticks = self.law.friction > 0.0 && local.is_some_and(|local| local.approach.gap < 0.0);
@@ -473,7 +513,11 @@ impl Force for ShapeContact {
     // k n nᵀ + k_t (I - n nᵀ)
     fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
         let stiffness = self.law.stiffest();
-        Some(self.points.iter().map(|point| (point.row, stiffness * point.share)).collect())
+        let largest = |(index, point): (usize, &ContactPoint)| {
+            let later = self.later.iter().map(|shares| shares.of_points[index]);
+            (point.row, stiffness * later.fold(point.share, f64::max))
+        };
+        Some(self.points.iter().enumerate().map(largest).collect())
     }
 
     fn editable(&self) -> Vec<Editable> {
@@ -491,6 +535,7 @@ impl Force for ShapeContact {
 
     fn bytes(&self) -> usize {
         size_of_val(self.points.as_slice())
+            + self.later.iter().map(|shares| 8 * shares.of_points.capacity()).sum::<usize>()
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&souple_engine::ContactPoint)) {

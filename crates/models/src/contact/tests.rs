@@ -301,7 +301,8 @@ pub(super) fn two_cubes(law: ContactLaw, height: f64, turn: Vec3) -> (Vec<Vec3>,
     let positions = [low.points.clone(), high.points.clone()].concat();
     let side = |surface: TriangleSurface, first: u32| {
         let count = surface.points.len();
-        ContactSurface { surface, rows: (first..first + count as u32).collect(), shares: vec![1.0; count] }
+        let rows = (first..first + count as u32).collect();
+        ContactSurface { surface: surface.into(), rows, shares: vec![1.0; count], later: Vec::new() }
     };
     (positions, SurfaceContact::new("contact", side(low, 0), side(high, first), law, 0.3).unwrap())
 }
@@ -446,7 +447,7 @@ fn bad_contacts_are_named() {
     let side = |rows: std::ops::Range<u32>| {
         let surface = cube(Vec3::ZERO, Vec3::ZERO);
         let shares = vec![1.0; surface.points.len()];
-        ContactSurface { surface, rows: rows.collect(), shares }
+        ContactSurface { surface: surface.into(), rows: rows.collect(), shares, later: Vec::new() }
     };
     let error = SurfaceContact::new("contact", side(0..26), side(25..51), LAW, 0.1).unwrap_err();
     assert_eq!(error, SurfaceContactError::SharedRow { row: 25 });

@@ -9,6 +9,9 @@
 //! A triangle is pushed where it is nearest to the part's core (a point or a segment), in proportion to its area: triangles
 //! finer or coarser make the same pressure, and a tool thinner than a triangle does not slip between its corners.
 //! The corners hand the force on to whatever points are at work.
+//!
+//! Where the surface opens, as that of a body which is cut does, triangles make pairs from when they are on it until they are gone. A
+//! date at which it does so makes what was searched before stale.
 
 use std::any::Any;
 
@@ -18,7 +21,7 @@ use souple_engine::{
     ParameterError, Scratch, TangentWeights,
 };
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{Aabb, AabbTree, TriangleSurface, closest_segment_triangle};
+use souple_mesh::{Aabb, AabbTree, OpeningSurface, closest_segment_triangle};
 use souple_solve::BlockMatrix;
 
 use crate::loads::{LoadError, Pose, RigidMotion, not_negative};
@@ -26,6 +29,7 @@ use crate::loads::{LoadError, Pose, RigidMotion, not_negative};
 use super::carrier::{Carrier, Pressed};
 use super::law::Approach;
 use super::leading::Leading;
+use super::opening::Openings;
 use super::shape::Capsule;
 use super::{ContactForce, ContactLaw, Shape};
 
@@ -33,7 +37,7 @@ use super::{ContactForce, ContactLaw, Shape};
 #[derive(Clone, Debug)]
 pub struct ToolSurface {
     /// At the start, facing outward.
-    pub surface: TriangleSurface,
+    pub surface: OpeningSurface,
     /// Row of each of its points.
     pub rows: Vec<u32>,
 }
@@ -49,12 +53,11 @@ pub struct ToolContact {
     law: ContactLaw,
     /// Rows of the corners of each triangle.
     corners: Vec<[u32; 3]>,
-    /// Area of each at the start over the mean.
+    /// Area of each at the start over the mean of those that are on the surface before it opens.
     shares: Vec<f64>,
     /// Places at the start, for the first search.
     tree: AabbTree,
-    /// All rows of corners, ascending.
-    rows: Vec<u32>,
+    openings: Openings,
     /// Distance up to which triangles make pairs, beside what the tool sweeps [m].
     reach: f64,
     /// For how long a search looks ahead [s].
@@ -158,18 +161,17 @@ impl ToolContact {
         if shape.parts().is_empty() {
             return Err(LoadError::Empty { field: "shape", expected: "rounded part of a tool" });
         }
+        let openings = Openings::new(&surface, &rows);
+        let (first, surface) = (surface.at(f64::NEG_INFINITY).collect::<Vec<_>>(), surface.surface);
         let triangles = 0..surface.triangles.len() as u32;
         let areas: Vec<f64> = triangles.clone().map(|t| surface.area_vector(t).length()).collect();
-        let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+        let mean = mean_area(&areas, &first);
         if mean <= 0.0 || !mean.is_finite() {
             return Err(LoadError::Empty { field: "triangles", expected: "triangle of an area" });
         }
         let boxes: Vec<Aabb> = triangles.map(|t| Aabb::of(surface.corners(t))).collect();
         let corners: Vec<[u32; 3]> =
             surface.triangles.iter().map(|corners| corners.map(|point| rows[point as usize])).collect();
-        let mut all: Vec<u32> = corners.iter().flatten().copied().collect();
-        all.sort_unstable();
-        all.dedup();
         Ok(Self {
             shape_name: name.clone(),
             name,
@@ -179,7 +181,7 @@ impl ToolContact {
             corners,
             shares: areas.iter().map(|area| area / mean).collect(),
             tree: AabbTree::build(&boxes),
-            rows: all,
+            openings,
             reach,
             horizon,
         })
@@ -302,6 +304,14 @@ impl ToolContact {
     }
 }
 
+/// The mean of some areas, of all where these are none.
+fn mean_area(areas: &[f64], of: &[usize]) -> f64 {
+    if of.is_empty() {
+        return areas.iter().sum::<f64>() / areas.len() as f64;
+    }
+    of.iter().map(|triangle| areas[*triangle]).sum::<f64>() / of.len() as f64
+}
+
 fn middle([a, b, c]: [Vec3; 3]) -> Vec3 {
     (a + b + c) * (1.0 / 3.0)
 }
@@ -334,6 +344,8 @@ struct Search {
     /// Where the tool was at the last one, and where it was expected to be at the horizon.
     from: Vec3,
     to: Vec3,
+    /// How often the surface had opened.
+    opened: usize,
 }
 
 fn search(scratch: &mut Scratch) -> &mut Search {
@@ -366,7 +378,7 @@ impl Force for ToolContact {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(Search { tree: self.tree.clone(), from: Vec3::ZERO, to: Vec3::ZERO })
+        Box::new(Search { tree: self.tree.clone(), from: Vec3::ZERO, to: Vec3::ZERO, opened: 0 })
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
@@ -429,8 +441,14 @@ impl Force for ToolContact {
     /// Pairs that touch stay; new ones are of triangles near what the tool sweeps up to the horizon.
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
         let pose = self.pose(at);
-        let Search { tree, from, to } = search(scratch);
-        tree.refit(self.corners.iter().map(|rows| Aabb::of(rows.map(|row| at.positions[row as usize]))));
+        let Search { tree, from, to, opened } = search(scratch);
+        *opened = self.openings.by(at.time);
+        let is_there = |triangle: usize| self.openings.has(triangle, at.time);
+        tree.refit(self.corners.iter().enumerate().map(|(triangle, rows)| {
+            // what is not there has no box that anything could overlap
+            let corners = is_there(triangle).then(|| rows.map(|row| at.positions[row as usize]));
+            corners.map_or(Aabb::EMPTY, Aabb::of)
+        }));
         let swept = pose.velocity * self.horizon;
         let turned = pose.angular_velocity.length() * self.horizon;
         // how far beyond its own size a part may come up to the horizon
@@ -439,7 +457,7 @@ impl Force for ToolContact {
             self.law.thickness + self.reach + turned * arm
         };
         let ends = |part: &Capsule| [part.from, part.to].map(|end| pose.to_world(end));
-        for pair in at.pairs {
+        for pair in at.pairs.iter().filter(|pair| is_there(pair.a as usize)) {
             let (sight, approach, _) = self.approach(pair, &pose, at);
             let part = &self.shape.parts()[pair.b as usize];
             // what slid off at the side has let go
@@ -469,17 +487,22 @@ impl Force for ToolContact {
     /// Half the reach is for what the body moves, half for what the tool moves beside its way.
     fn pairs_are_stale(&self, searched: &[Vec3], at: &Configuration, scratch: &Scratch) -> bool {
         let limit_sq = 0.25 * self.reach * self.reach;
-        let Some(Search { from, to, .. }) = scratch.downcast_ref() else { return false };
+        let Some(Search { from, to, opened, .. }) = scratch.downcast_ref() else { return false };
+        if *opened != self.openings.by(at.time) {
+            return true;
+        }
         let (way, now) = (*to - *from, self.pose(at).origin - *from);
         let share = (now.dot(way) / way.length_sq().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         let moved = |row: &u32| (at.positions[*row as usize] - searched[*row as usize]).length_sq();
-        (now - way * share).length_sq() > limit_sq || self.rows.iter().any(|row| moved(row) > limit_sq)
+        (now - way * share).length_sq() > limit_sq
+            || self.openings.rows(at.time).iter().any(|row| moved(row) > limit_sq)
     }
 
     fn recall_search(&self, searched: &Configuration, scratch: &mut Scratch) {
         let pose = self.pose(searched);
-        let Search { from, to, .. } = search(scratch);
+        let Search { from, to, opened, .. } = search(scratch);
         (*from, *to) = (pose.origin, pose.origin + pose.velocity * self.horizon);
+        *opened = self.openings.by(searched.time);
     }
 
     /// On which side it is was seen in time, where friction holds it is where it is now.
@@ -492,8 +515,9 @@ impl Force for ToolContact {
     // k n nᵀ shared by weights of sum one is at most k on each corner
     fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
         let stiffest = self.law.stiffest();
-        let bound = |(rows, share): (&[u32; 3], &f64)| rows.map(|row| (row, stiffest * share));
-        Some(self.corners.iter().zip(&self.shares).flat_map(bound).collect())
+        let bound =
+            |triangle: usize| self.corners[triangle].map(|row| (row, stiffest * self.shares[triangle]));
+        Some(self.openings.largest_sums(self.corners.len(), &|triangles| triangles.flat_map(bound).collect()))
     }
 
     fn accepts_pair(&self, pair: &Pair) -> bool {
@@ -539,10 +563,7 @@ impl Force for ToolContact {
     }
 
     fn bytes(&self) -> usize {
-        12 * self.corners.capacity()
-            + 8 * self.shares.capacity()
-            + 4 * self.rows.capacity()
-            + self.tree.bytes()
+        12 * self.corners.capacity() + 8 * self.shares.capacity() + self.openings.bytes() + self.tree.bytes()
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {

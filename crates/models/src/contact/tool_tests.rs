@@ -46,9 +46,15 @@ impl Setting {
         let rows = (0..positions.len() as u32).collect();
         let translation = Some(Arc::new(FormulaVector::compile(motion).unwrap()) as _);
         let motion = RigidMotion { translation, ..RigidMotion::default() };
-        let contact =
-            ToolContact::new("tool", ToolSurface { surface, rows }, shape, motion, law, [0.1, horizon])
-                .unwrap();
+        let contact = ToolContact::new(
+            "tool",
+            ToolSurface { surface: surface.into(), rows },
+            shape,
+            motion,
+            law,
+            [0.1, horizon],
+        )
+        .unwrap();
         let mut memory = vec![0.0; contact.memory_len()];
         contact.initial_memory(&mut memory);
         Self { velocities: vec![Vec3::ZERO; positions.len()], contact, positions, memory }

@@ -6,19 +6,24 @@
 //! active or follow. The source ties to three points of the boundary with offsets, and weights by the inverse of distances to
 //! the corners; with those a node of an evenly stretched body would leave its place.
 //!
+//! Where the body is cut ([`Cut`]), triangles go whose middles are on cells that do, and the body's own inner faces are there in their
+//! place, as nodes of their own. At the rim nodes hang on cells that stay as long as any triangle around them.
+//!
 //! Where finer points come, they come where they have followed, and nothing jumps. Where others come to be followed, points are
 //! moved ([`Levels::moved`]); what a node would jump by is taken as an offset that fades evenly: the surface never pops. All of
 //! that evolves, so it is a field of State.
 //!
+//! [`Cut`]: super::Cut
 //! [`Levels::moved`]: souple_engine::levels::Levels::moved
 
 use std::sync::Arc;
 
 use souple_engine::{CommittedRows, Field, FieldState, FieldStep, Scratch, StepError};
 use souple_math::Vec3;
-use souple_mesh::{Mesh, TriangleSurface};
+use souple_mesh::{CellLocator, Mesh, OpeningSurface, Span, TriangleSurface};
 
 use super::LevelsForce;
+use super::links::Carrier;
 
 /// How a node hangs on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +42,7 @@ pub struct Dress {
     /// Row of the body's first point.
     first_row: usize,
     /// At rest.
-    surface: TriangleSurface,
+    surface: OpeningSurface,
     /// By level, from coarse to fine, and by node.
     ties: Vec<Vec<Tie>>,
     fading: Fading,
@@ -106,41 +111,61 @@ impl Tie {
 }
 
 impl Dress {
-    /// Of a body and its meshes, from coarse to fine; `of` are the numbers of the body's system and of its force there. Nodes stand
-    /// at rest.
+    /// Of a body and its meshes, from coarse to fine, of the finest of which cells are cut at dates [s], infinite where that is never,
+    /// none where no cell is; `of` are the numbers of the body's system and of its force there. Nodes stand at rest.
     pub fn new(
         name: String,
         of: [usize; 2],
         surface: TriangleSurface,
-        (force, meshes): (&LevelsForce, &[&Mesh]),
+        (force, meshes, cut_at): (&LevelsForce, &[&Mesh], &[f64]),
         fading: Fading,
     ) -> Self {
         let first_row = force.first_row;
-        let ties = meshes.iter().enumerate().map(|(level, mesh)| {
-            let carriers = force.hierarchy().carriers(level, mesh, &surface.points);
-            let row = |corner: u32| first_row as u32 + corner;
-            carriers
-                .into_iter()
-                .map(|carrier| Tie { corners: carrier.corners.map(row), weights: carrier.weights })
-                .collect()
-        });
-        Self { name, of, first_row, ties: ties.collect(), surface, fading }
+        let row = |corner: u32| first_row as u32 + corner;
+        let tie = |carrier: Carrier| Tie { corners: carrier.corners.map(row), weights: carrier.weights };
+        let surface = match meshes {
+            [.., finest] if !cut_at.is_empty() => opened(surface, finest, cut_at),
+            _ => surface.into(),
+        };
+        let points = &surface.surface.points;
+        let hierarchy = force.hierarchy();
+        let of_level =
+            |(level, mesh): (usize, &&Mesh)| hierarchy.carriers(level, mesh, points).into_iter().map(tie);
+        let mut ties: Vec<Vec<Tie>> =
+            meshes.iter().enumerate().map(|level| of_level(level).collect()).collect();
+        if let ([.., finest], Some(of_finest), true) = (meshes, ties.last_mut(), surface.opens()) {
+            let needed = needed_until(&surface);
+            let mut dates = needed.clone();
+            dates.sort_unstable_by(f64::total_cmp);
+            dates.dedup();
+            for date in dates {
+                let nodes: Vec<usize> = (0..needed.len()).filter(|node| needed[*node] == date).collect();
+                let places: Vec<Vec3> = nodes.iter().map(|node| points[*node]).collect();
+                let stays = |cell: usize| cut_at[cell] >= date;
+                let carriers = hierarchy.carriers_among(meshes.len() - 1, (finest, &stays), &places);
+                nodes.into_iter().zip(carriers).for_each(|(node, carrier)| of_finest[node] = tie(carrier));
+            }
+        }
+        Self { name, of, first_row, ties, surface, fading }
     }
 
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.surface.triangles
+    /// Those that are there at a time [s].
+    pub fn triangles(&self, time: f64) -> Vec<[u32; 3]> {
+        self.surface.at(time).map(|triangle| self.surface.surface.triangles[triangle]).collect()
     }
 
     /// Where nodes are at rest [m].
     pub fn rest(&self) -> &[Vec3] {
-        &self.surface.points
+        &self.surface.surface.points
     }
 
     /// The state before anything has moved.
     pub fn start(&self) -> FieldState {
-        let count = self.surface.points.len();
+        let count = self.surface.surface.points.len();
         let mut state = FieldState { values: vec![0.0; PER_NODE * count + 1], indices: vec![0; count] };
-        for (shown, numbers) in self.surface.points.iter().zip(state.values.chunks_exact_mut(PER_NODE)) {
+        for (shown, numbers) in
+            self.surface.surface.points.iter().zip(state.values.chunks_exact_mut(PER_NODE))
+        {
             Node { shown: *shown, ..Node::default() }.write(numbers);
         }
         state
@@ -148,7 +173,7 @@ impl Dress {
 
     /// Where nodes are [m].
     pub fn points<'a>(&self, state: &'a FieldState) -> impl ExactSizeIterator<Item = Vec3> + 'a {
-        let count = self.surface.points.len();
+        let count = self.surface.surface.points.len();
         state.values[..PER_NODE * count].chunks_exact(PER_NODE).map(|numbers| Node::read(numbers).shown)
     }
 
@@ -161,6 +186,50 @@ impl Dress {
     pub fn greatest_jump(&self, state: &FieldState) -> f64 {
         state.values.last().copied().unwrap_or(0.0)
     }
+}
+
+/// A surface of which triangles go with the cells that their middles are on, or are nearest to; and the walls that cuts open, as the faces
+/// of these cells.
+fn opened(surface: TriangleSurface, mesh: &Mesh, cut_at: &[f64]) -> OpeningSurface {
+    let locator = CellLocator::new(mesh);
+    let until = |triangle: u32| {
+        let [a, b, c] = surface.corners(triangle);
+        let cell = locator.carrier((a + b + c) * (1.0 / 3.0)).map(|location| location.cell);
+        cell.map_or(f64::INFINITY, |cell| cut_at[cell as usize])
+    };
+    let triangles = 0..surface.triangles.len() as u32;
+    let spans = triangles.map(|triangle| Span { until: until(triangle), ..Span::ALWAYS }).collect();
+    let mut made = OpeningSurface {
+        surface: TriangleSurface { cells: Vec::new(), mesh_points: Vec::new(), ..surface },
+        spans,
+    };
+    let own = mesh.opening_surface(cut_at);
+    let mut number = vec![None; own.surface.points.len()];
+    for (corners, span) in own.surface.triangles.iter().zip(&own.spans) {
+        if span.from == f64::NEG_INFINITY {
+            continue;
+        }
+        let points = &mut made.surface.points;
+        let corners = corners.map(|corner| {
+            *number[corner as usize].get_or_insert_with(|| {
+                points.push(own.surface.points[corner as usize]);
+                points.len() as u32 - 1
+            })
+        });
+        made.surface.triangles.push(corners);
+        made.spans.push(*span);
+    }
+    made
+}
+
+/// Until when there is a triangle around each point [s].
+fn needed_until(surface: &OpeningSurface) -> Vec<f64> {
+    let mut needed = vec![f64::NEG_INFINITY; surface.surface.points.len()];
+    for (triangle, corners) in surface.surface.triangles.iter().enumerate() {
+        let until = surface.span(triangle).until;
+        corners.iter().for_each(|corner| needed[*corner as usize] = needed[*corner as usize].max(until));
+    }
+    needed
 }
 
 /// A dress that others hold too, as a field of the world.
@@ -225,7 +294,9 @@ impl Field for Worn {
     fn bytes(&self, _scratch: &Scratch) -> usize {
         let Dress { ties, surface, .. } = &*self.0;
         let ties: usize = ties.iter().map(|ties| size_of::<Tie>() * ties.capacity()).sum();
-        ties + size_of::<Vec3>() * surface.points.capacity() + 12 * surface.triangles.capacity()
+        let TriangleSurface { points, triangles, .. } = &surface.surface;
+        let spans = size_of::<Span>() * surface.spans.capacity();
+        ties + size_of::<Vec3>() * points.capacity() + 12 * triangles.capacity() + spans
     }
 }
 
@@ -285,7 +356,7 @@ mod tests {
             "dress".to_owned(),
             [0, 0],
             surface,
-            (&force, &[coarse, fine]),
+            (&force, &[coarse, fine], &[]),
             Fading { blend: 0.1, most: 1e-3 },
         );
         let greatest = |map: Mat3, away: Vec3| {

@@ -250,13 +250,27 @@ impl Hierarchy {
     /// The tetrahedron of a level that carries a position. Outside of all, of those around the closest one that with the
     /// least extrapolation: a flat tetrahedron at the border has wild weights a little way off.
     fn carrier(&self, locator: &CellLocator, level: usize, position: Vec3) -> Option<Carrier> {
+        let first = self.tets_of_level[level].start;
+        self.carrier_among(locator, &|cell| first + cell, &|_| true, position)
+    }
+
+    /// The same among the tetrahedra that are kept, which the locator's cells are.
+    fn carrier_among(
+        &self,
+        locator: &CellLocator,
+        tet_of: &dyn Fn(usize) -> usize,
+        is_kept: &dyn Fn(usize) -> bool,
+        position: Vec3,
+    ) -> Option<Carrier> {
         let location = locator.carrier(position)?;
-        let found = self.tets_of_level[level].start + location.cell as usize;
+        let found = tet_of(location.cell as usize);
         let least = |tet: usize| self.tets[tet].weights(&self.rest, position).into_iter().fold(1.0, f64::min);
         let mut best = (least(found), found);
         if location.distance > 0.0 {
             for corner in self.tets[found].corners {
-                for tet in self.tets_of_point.get(corner as usize) {
+                for tet in
+                    self.tets_of_point.get(corner as usize).iter().filter(|tet| is_kept(**tet as usize))
+                {
                     let weight = least(*tet as usize);
                     if weight > best.0 {
                         best = (weight, *tet as usize);
@@ -272,8 +286,23 @@ impl Hierarchy {
 impl Hierarchy {
     /// What places at rest would hang on in a level, whose mesh that is.
     pub fn carriers(&self, level: usize, mesh: &Mesh, places: &[Vec3]) -> Vec<Carrier> {
-        let locator = CellLocator::new(mesh);
-        let found = |place: &Vec3| self.carrier(&locator, level, *place);
+        self.carriers_among(level, (mesh, &|_| true), places)
+    }
+
+    /// The same among the cells of the mesh that are kept, of which there must be some.
+    pub fn carriers_among(
+        &self,
+        level: usize,
+        (mesh, is_kept): (&Mesh, &dyn Fn(usize) -> bool),
+        places: &[Vec3],
+    ) -> Vec<Carrier> {
+        let cells: Vec<usize> = (0..mesh.cell_count()).filter(|cell| is_kept(*cell)).collect();
+        let part = (cells.len() < mesh.cell_count()).then(|| mesh.of_cells(is_kept));
+        let locator = CellLocator::new(part.as_ref().unwrap_or(mesh));
+        let first = self.tets_of_level[level].start;
+        let is_kept = |tet: usize| is_kept(tet - first);
+        let found =
+            |place: &Vec3| self.carrier_among(&locator, &|cell| first + cells[cell], &is_kept, *place);
         places
             .iter()
             .map(|place| found(place).unwrap_or_else(|| unreachable!("a place is finite, a mesh has cells")))

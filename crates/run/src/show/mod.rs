@@ -118,20 +118,26 @@ impl Show {
 }
 
 impl BodyMoment {
-    /// All its points, and of its cells those that are kept.
+    /// Of its cells those that are kept, with their points; all points where no cell is.
     fn of_cells(self, is_kept: impl Fn(usize) -> bool) -> Self {
-        let mut mesh = Mesh { points: self.mesh.points.clone(), ..Mesh::default() };
-        let kept: Vec<usize> = (0..self.mesh.cell_count()).filter(|cell| is_kept(*cell)).collect();
-        for (_, cell) in self.mesh.cells().enumerate().filter(|(cell, _)| is_kept(*cell)) {
-            mesh.push_cell(cell.kind, cell.nodes);
-        }
-        let left = |field: Field| {
-            let of_cell = |cell: &usize| &field.values[cell * field.components..][..field.components];
-            let values = kept.iter().flat_map(of_cell).copied().collect();
+        let cells: Vec<usize> = (0..self.mesh.cell_count()).filter(|cell| is_kept(*cell)).collect();
+        let mut mesh = self.mesh.of_cells(is_kept);
+        let mut is_there = vec![cells.is_empty(); mesh.points.len()];
+        mesh.cells().flat_map(|cell| cell.nodes).for_each(|node| is_there[*node as usize] = true);
+        let points: Vec<usize> = (0..is_there.len()).filter(|point| is_there[*point]).collect();
+        let left = |field: Field, kept: &[usize]| {
+            let of_one = |one: &usize| &field.values[one * field.components..][..field.components];
+            let values = kept.iter().flat_map(of_one).copied().collect();
             Field { values, ..field }
         };
-        let cell_fields = self.cell_fields.into_iter().map(left).collect();
-        Self { mesh: Arc::new(mesh), cell_fields, ..self }
+        mesh.keep_points(&points);
+        Self {
+            mesh: Arc::new(mesh),
+            positions: points.iter().map(|point| self.positions[*point]).collect(),
+            point_fields: self.point_fields.into_iter().map(|field| left(field, &points)).collect(),
+            cell_fields: self.cell_fields.into_iter().map(|field| left(field, &cells)).collect(),
+            ..self
+        }
     }
 }
 
@@ -144,6 +150,15 @@ pub(crate) fn growth(mesh: &[Vec3], positions: &[Vec3]) -> f64 {
     let extent = |points: &[Vec3]| BoundingBox::of(points.iter().copied()).diagonal();
     let rest = extent(mesh);
     if rest > 0.0 { extent(positions) / rest } else { 1.0 }
+}
+
+/// The size of the largest of some cells of a mesh, in sizes of it: of a body that is cut, parts may be anywhere.
+pub(crate) fn growth_of_cells(mesh: &Mesh, positions: &[Vec3], is_kept: impl Fn(usize) -> bool) -> f64 {
+    let extent =
+        |nodes: &[u32]| BoundingBox::of(nodes.iter().map(|node| positions[*node as usize])).diagonal();
+    let kept = mesh.cells().enumerate().filter(|(cell, _)| is_kept(*cell));
+    let largest = kept.map(|(_, cell)| extent(cell.nodes)).fold(0.0, f64::max);
+    largest / mesh.bounds().diagonal()
 }
 
 /// A field of three numbers on the points.

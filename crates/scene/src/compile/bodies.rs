@@ -5,7 +5,7 @@ use std::ops::Range;
 use souple_engine::steppers::Stability;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{Mesh, TriangleSurface};
+use souple_mesh::{Mesh, OpeningSurface};
 use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::{self, Material};
@@ -579,21 +579,12 @@ fn surface_shares(body: &Placed) -> Vec<(u32, f64)> {
         let total: f64 = lengths.diagonal.iter().sum();
         return (body.rows.start as u32..).zip(&lengths.diagonal).map(|(row, l)| (row, l / total)).collect();
     }
-    let surface = body.mesh.boundary_surface();
-    let areas = point_areas(&surface);
+    let surface = OpeningSurface::from(body.mesh.boundary_surface());
+    let areas = surface.point_areas(0.0);
     let total: f64 = areas.iter().sum();
     let first = body.rows.start as u32;
-    surface.mesh_points.iter().zip(&areas).map(|(point, area)| (first + point, area / total)).collect()
-}
-
-/// A third of the triangles around each point of a surface [m²].
-pub fn point_areas(surface: &TriangleSurface) -> Vec<f64> {
-    let mut areas = vec![0.0; surface.points.len()];
-    for (triangle, corners) in surface.triangles.iter().enumerate() {
-        let third = surface.area_vector(triangle as u32).length() / 3.0;
-        corners.iter().for_each(|corner| areas[*corner as usize] += third);
-    }
-    areas
+    let points = surface.surface.mesh_points.iter();
+    points.zip(&areas).map(|(point, area)| (first + point, area / total)).collect()
 }
 
 fn materials_of(draft: &Draft, body: &Placed) -> Option<BodyMaterials> {

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use souple_engine::{Detection, Felt, Force};
 use souple_math::Vec3;
-use souple_mesh::TriangleSurface;
+use souple_mesh::{OpeningSurface, TriangleSurface};
 use souple_models::contact::shape::{BuildShape, ShapeError};
 use souple_models::contact::{
-    ContactLaw, ContactPoint, ContactSurface, ImposedContact, ImposedLaw, Shape, ShapeContact,
+    ContactLaw, ContactPoint, ContactSurface, ImposedContact, ImposedLaw, Shape, ShapeContact, Shares,
     SurfaceContact, ToolContact, ToolSurface, penalty_stiffness,
 };
 use souple_models::loads::RigidMotion;
@@ -16,6 +16,7 @@ use souple_skin::BAND;
 use super::Draft;
 use super::bodies::Placed;
 use super::freedom::{Joint, touching_joints};
+use super::levels;
 use super::motion::motion;
 use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
@@ -26,15 +27,31 @@ use crate::spec::contact::{Against, Contact, Detect, Imposed, ShapeSpec, Weighin
 /// A body's points that touch, with the areas around them.
 pub(super) struct Touching {
     pub points: Vec<ContactPoint>,
-    /// [m²]
+    /// Their shares from each date on at which the surface opens.
+    pub later: Vec<Shares>,
+    /// Of those that are on the surface before it opens [m²].
     pub mean_area: f64,
 }
 
 impl Touching {
-    /// Rows of the points with their shares of the stiffness.
+    /// Rows of the points with the largest shares of the stiffness that they ever have.
     fn shares(&self) -> impl Iterator<Item = (u32, f64)> {
-        self.points.iter().map(|point| (point.row, point.share))
+        let largest = |(index, point): (usize, &ContactPoint)| {
+            let later = self.later.iter().map(|shares| shares.of_points[index]);
+            (point.row, later.fold(point.share, f64::max))
+        };
+        self.points.iter().enumerate().map(largest)
     }
+}
+
+/// How a contact weighs an area, in parts of a mean one; what is not on the surface has none.
+fn share_of(contact: &Contact, area: f64, mean_area: f64) -> f64 {
+    if area > 0.0 { contact.weigh.share(area / mean_area) } else { 0.0 }
+}
+
+/// The dates at which a surface opens in the course of a run [s].
+fn later_dates(surface: &OpeningSurface) -> impl Iterator<Item = f64> {
+    surface.dates().into_iter().filter(|date| *date > 0.0)
 }
 
 /// All contacts.
@@ -75,6 +92,44 @@ pub fn add(draft: &mut Draft) {
     }
 }
 
+/// What is around a point that touches.
+struct Around {
+    /// Of the mesh.
+    point: u32,
+    /// Before its surface opens [m²].
+    closed: f64,
+    /// At the start, then from each date on at which its surface opens [m²].
+    areas: Vec<f64>,
+}
+
+/// Masses of a network, which count alike.
+fn masses(body: &Placed) -> Vec<Around> {
+    let mass = |point| Around { point, closed: 1.0, areas: vec![1.0] };
+    (0..body.mesh.points.len() as u32).map(mass).collect()
+}
+
+/// All points that are ever on a surface, which opens at some dates [s].
+fn around_points(surface: &OpeningSurface, dates: &[f64]) -> Vec<Around> {
+    let closed = surface.point_areas(f64::NEG_INFINITY);
+    let areas: Vec<Vec<f64>> = [0.0].iter().chain(dates).map(|date| surface.point_areas(*date)).collect();
+    let around = |(index, point): (usize, &u32)| Around {
+        point: *point,
+        closed: closed[index],
+        areas: areas.iter().map(|areas| areas[index]).collect(),
+    };
+    surface.surface.mesh_points.iter().enumerate().map(around).collect()
+}
+
+/// The mean area around points while their surface is closed; of walls that a cut opens alone, the largest that they have [m²].
+fn mean_area(points: &[Around]) -> f64 {
+    let closed: Vec<f64> = points.iter().map(|around| around.closed).filter(|area| *area > 0.0).collect();
+    if closed.is_empty() {
+        let largest = |around: &Around| around.areas.iter().copied().fold(0.0, f64::max);
+        return points.iter().map(largest).sum::<f64>() / points.len() as f64;
+    }
+    closed.iter().sum::<f64>() / closed.len() as f64
+}
+
 /// Surface points in the region of a contact, or masses of a network, which count alike; `None` where there are none, which is
 /// reported.
 pub(super) fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching> {
@@ -82,31 +137,35 @@ pub(super) fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Optio
     if inside.as_ref().is_some_and(Vec::is_empty) {
         return None;
     }
-    let all: Vec<(u32, f64)> = if body.spec.network.is_some() {
-        (0..body.mesh.points.len() as u32).map(|mass| (mass, 1.0)).collect()
-    } else {
-        let surface = body.mesh.boundary_surface();
-        let areas = super::bodies::point_areas(&surface);
-        surface.mesh_points.iter().copied().zip(areas).collect()
+    let is_inside = |point: u32| inside.as_ref().is_none_or(|inside| inside.binary_search(&point).is_ok());
+    let (mut chosen, dates) = match &body.spec.network {
+        Some(_) => (masses(body), Vec::new()),
+        None => {
+            let surface = levels::opening_surface(draft, body);
+            let dates: Vec<f64> = later_dates(&surface).collect();
+            (around_points(&surface, &dates), dates)
+        }
     };
-    let chosen: Vec<(u32, f64)> = all
-        .into_iter()
-        .filter(|(point, _)| inside.as_ref().is_none_or(|inside| inside.binary_search(point).is_ok()))
-        .collect();
+    chosen.retain(|around| is_inside(around.point));
     if chosen.is_empty() {
         let site = contact.region.as_ref().map_or(&contact.site, |region| &region.site);
         let message = format!("this region holds no point on the surface of body `{}`", contact.body);
         draft.log.add(Code::EmptyRegion, site, message, "a region that reaches the surface");
         return None;
     }
-    let mean_area = chosen.iter().map(|(_, area)| area).sum::<f64>() / chosen.len() as f64;
+    let mean_area = mean_area(&chosen);
     let first = body.rows.start as u32;
-    let contact_point = |(point, area): (u32, f64)| ContactPoint {
-        row: first + point,
-        share: contact.weigh.share(area / mean_area),
-        start: body.mesh.points[point as usize],
+    let contact_point = |around: &Around| ContactPoint {
+        row: first + around.point,
+        share: share_of(contact, around.areas[0], mean_area),
+        start: body.mesh.points[around.point as usize],
     };
-    Some(Touching { points: chosen.into_iter().map(contact_point).collect(), mean_area })
+    let points = chosen.iter().map(contact_point).collect();
+    let later = dates.into_iter().enumerate().map(|(number, from)| {
+        let share = |around: &Around| share_of(contact, around.areas[number + 1], mean_area);
+        Shares { from, of_points: chosen.iter().map(share).collect() }
+    });
+    Some(Touching { later: later.collect(), points, mean_area })
 }
 
 /// Young's modulus behind the points of a contact [Pa]; `None` where a stiffness must be told, and is not.
@@ -245,6 +304,7 @@ fn against_shape(
                 }
             },
             None => ShapeContact::new(contact.name.clone(), touching.points, built, motion, law)
+                .and_then(|force| force.opening(touching.later))
                 .map(|force| Box::new(force.against(&shape.name)) as _),
         };
     match force {
@@ -314,13 +374,13 @@ pub(super) fn tool_surface(
         let message = "triangles are touched by tools of rounded parts".to_owned();
         return refuse(message, "a sphere, a capsule or jaws that are not hollow, or `detect = \"points\"`");
     }
-    let mut surface = body.mesh.boundary_surface();
+    let mut surface = levels::opening_surface(draft, body);
     let first = body.rows.start as u32;
-    let rows: Vec<u32> = surface.mesh_points.iter().map(|point| first + point).collect();
+    let rows: Vec<u32> = surface.surface.mesh_points.iter().map(|point| first + point).collect();
     let chosen: std::collections::BTreeSet<u32> = touching.points.iter().map(|point| point.row).collect();
     let is_chosen = |corners: &[u32; 3]| corners.iter().all(|point| chosen.contains(&rows[*point as usize]));
-    surface.triangles.retain(is_chosen);
-    if surface.triangles.is_empty() {
+    surface.retain(is_chosen);
+    if surface.surface.triangles.is_empty() {
         let message = "no triangle of the surface has all its corners in the region".to_owned();
         return refuse(message, "a larger region");
     }
@@ -331,7 +391,7 @@ pub(super) fn tool_surface(
         // what is seen where one period begins is used until the next one ends
         Detection::OnePeriodLate => 2.0 * period,
     };
-    let reach = surface.mean_edge();
+    let reach = surface.surface.mean_edge();
     Some(Some((ToolSurface { surface, rows }, [reach, horizon])))
 }
 
@@ -365,7 +425,8 @@ fn against_skin(
     }
     let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
     let shape = Box::new(SkinShape::new(skin.clone(), body.system));
-    match ShapeContact::new(contact.name.clone(), touching.points, shape, RigidMotion::default(), law) {
+    let force = ShapeContact::new(contact.name.clone(), touching.points, shape, RigidMotion::default(), law);
+    match force.and_then(|force| force.opening(touching.later)) {
         Ok(force) => Some(force.against(&skin.name)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
@@ -397,25 +458,28 @@ fn against_body(
         let message = format!("`{}` and `{}` step in different systems", body.spec.name, other.spec.name);
         return refuse(message, "bodies of one system");
     }
-    let surfaces = bodies.map(|placed| placed.mesh.boundary_surface());
-    let reach = f64::max(surfaces[0].mean_edge(), surfaces[1].mean_edge()) + contact.thickness;
+    let surfaces = bodies.map(|placed| levels::opening_surface(draft, placed));
+    let reach =
+        f64::max(surfaces[0].surface.mean_edge(), surfaces[1].surface.mean_edge()) + contact.thickness;
     let mut sides = bodies.iter().zip(surfaces).map(|(placed, surface)| {
         // one stiffness for each area on both sides, of which a point of the region's mean area has the whole
-        let share = |area: &f64| contact.weigh.share(area / touching.mean_area);
-        let shares = super::bodies::point_areas(&surface).iter().map(share).collect();
+        let shares = |time: f64| -> Vec<f64> {
+            let areas = surface.point_areas(time);
+            areas.into_iter().map(|area| share_of(contact, area, touching.mean_area)).collect()
+        };
+        let later = later_dates(&surface).map(|from| Shares { from, of_points: shares(from) }).collect();
         let first = placed.rows.start as u32;
-        let rows = surface.mesh_points.iter().map(|point| first + point).collect();
-        ContactSurface { rows, shares, surface }
+        let rows = surface.surface.mesh_points.iter().map(|point| first + point).collect();
+        ContactSurface { rows, shares: shares(0.0), later, surface }
     });
     let (mut a, b) = (sides.next()?, sides.next()?);
-    let facing = b.rows.iter().copied().zip(b.shares.iter().copied());
+    let facing = b.rows.iter().copied().zip(b.largest_shares());
     let modulus = modulus_between(modulus_behind(body, touching.shares()), modulus_behind(other, facing));
     // points outside the region do not touch by themselves
     let chosen: std::collections::BTreeSet<u32> = touching.points.iter().map(|point| point.row).collect();
-    for (row, share) in a.rows.iter().zip(&mut a.shares) {
-        if !chosen.contains(row) {
-            *share = 0.0;
-        }
+    let outside: Vec<usize> = (0..a.rows.len()).filter(|point| !chosen.contains(&a.rows[*point])).collect();
+    for shares in a.later.iter_mut().map(|later| &mut later.of_points).chain([&mut a.shares]) {
+        outside.iter().for_each(|point| shares[*point] = 0.0);
     }
     let law = law(contact, modulus, touching.mean_area);
     match SurfaceContact::new(contact.name.clone(), a, b, law, reach) {

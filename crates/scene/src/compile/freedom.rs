@@ -302,7 +302,7 @@ pub fn touching_joints(
             direction,
         })
     };
-    points.iter().filter_map(joint).collect()
+    points.iter().filter(|point| point.share > 0.0).filter_map(joint).collect()
 }
 
 #[cfg(test)]

@@ -66,6 +66,7 @@ fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, Box<dyn Force>)>
                 }
             },
             None => ShapeContact::carried(force.clone(), touching.points, shape, carrier, law)
+                .and_then(|contact| contact.opening(touching.later))
                 .map(|contact| Box::new(contact) as _),
         };
     match made {

@@ -6,8 +6,8 @@ use souple_engine::Force;
 use souple_engine::levels::{Division, Pace};
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_mesh::Mesh;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
+use souple_mesh::{Mesh, OpeningSurface};
 use souple_models::multiresolution::{Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
 use souple_table::Value;
@@ -180,6 +180,11 @@ pub fn cut_at(draft: &Draft, body: &Placed) -> Vec<f64> {
     at
 }
 
+/// What is ever on the surface of a body, and from when until when.
+pub(super) fn opening_surface(draft: &Draft, body: &Placed) -> OpeningSurface {
+    body.mesh.opening_surface(&cut_at(draft, body))
+}
+
 /// Whether a formula of levels gives one that there is at every point at rest.
 pub(super) fn check_fixed(
     draft: &Draft,
@@ -250,6 +255,24 @@ pub fn warn_of_budgets(draft: &mut Draft) {
     draft.warnings.extend(doubts);
 }
 
+/// Says where cuts go through all cells of a body: from then on it is loose points, which nothing touches.
+pub fn warn_of_cuts(draft: &mut Draft) {
+    let doubt = |body: &Placed| {
+        let spec = body.spec.levels.as_ref()?;
+        let at = cut_at(draft, body);
+        let last = at.iter().copied().reduce(f64::max).filter(|last| last.is_finite())?;
+        Some(format!(
+            "{}: the cuts of body `{}` go through all of its {} cells: from {last} s on its points fall alone, and it has no surface to \
+             be seen or touched; a smaller `region` would leave some of it",
+            draft.place(&spec.site),
+            body.spec.name,
+            at.len()
+        ))
+    };
+    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
+    draft.warnings.extend(doubts);
+}
+
 /// What bodies with levels wear: fields of the world, each with its first state.
 pub fn add_dresses(draft: &mut Draft) {
     let made: Vec<(String, Dress)> =
@@ -277,7 +300,7 @@ fn dress(draft: &Draft, body: &Placed) -> Option<Dress> {
     let force = forces[of].as_any().downcast_ref::<LevelsForce>()?;
     let name = format!("{}.dress", body.spec.name);
     let fading = Fading { blend: spec.blend, most: spec.most.unwrap_or(f64::INFINITY) };
-    Some(Dress::new(name, [body.system, of], surface, (force, &meshes), fading))
+    Some(Dress::new(name, [body.system, of], surface, (force, &meshes, &cut_at(draft, body)), fading))
 }
 
 /// Rest positions and start velocities of the coarser points: `v + ω × (x - c)` as those of the body.

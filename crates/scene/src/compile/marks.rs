@@ -8,7 +8,7 @@ use souple_models::marks::{Gash, Kept, MarkedSurface, Marks, Sides, Tool};
 
 use super::Draft;
 use super::bodies::Placed;
-use super::levels::cut_at;
+use super::levels::{cut_at, opening_surface};
 use crate::diagnostic::Code;
 use crate::scene::{CarriedMarks, MarksInfo};
 use crate::spec::contact::{Against, Contact};
@@ -25,7 +25,7 @@ pub fn add(draft: &mut Draft) {
         draft.model.fields.push(Box::new(Kept(Arc::clone(&info.marks))));
         let worn = draft.dresses.iter().position(|dress| dress.body == info.body);
         if let (Some(worn), Some(body)) = (worn, draft.body(&info.body)) {
-            let places = carried(&body.mesh.boundary_surface(), draft.dresses[worn].dress.rest());
+            let places = carried(&opening_surface(draft, body).surface, draft.dresses[worn].dress.rest());
             draft.dresses[worn].marks = Some(CarriedMarks { marks: info.clone(), places });
         }
         draft.marks.push(info);
@@ -93,8 +93,8 @@ fn touched(contact: &Contact) -> impl Iterator<Item = &str> {
 /// The marks of a body; `None` where it has none, or where it was refused.
 fn marks(draft: &Draft, body: &Placed) -> Option<Marks> {
     let spec = body.spec.marks.as_ref()?;
-    let surface = body.mesh.boundary_surface();
-    if surface.triangles.is_empty() {
+    let surface = opening_surface(draft, body);
+    if surface.surface.triangles.is_empty() {
         let message = "the body has no surface that could be marked";
         draft.log.add(Code::Conflict, &spec.site, message, "a mesh of volumes or of sheets");
         return None;

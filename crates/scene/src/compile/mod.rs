@@ -158,6 +158,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_heat(&mut draft);
     doubts::warn(&mut draft);
     levels::warn_of_budgets(&mut draft);
+    levels::warn_of_cuts(&mut draft);
     imposing::warn(&mut draft);
     doubts::warn_of_detection(&mut draft);
     freedom::check(&mut draft);
@@ -195,7 +196,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         let radii = network::radii(&body, spec);
         let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
         let marks = marks.iter().find(|marks| marks.body == body.spec.name).cloned();
-        BodyInfo { dress, marks, cut_at, ..BodyInfo::new(body, radii, contours) }
+        BodyInfo { dress, marks, ..BodyInfo::new(body, radii, contours, cut_at) }
     });
     Some(Scene {
         title: title(spec, sources),

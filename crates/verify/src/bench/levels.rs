@@ -83,7 +83,13 @@ impl Poke {
         Ok(Held {
             active,
             force: [force[0], force[1], force[2]],
-            surface: body.surface.mesh_points.iter().map(|point| rows[*point as usize].to_array()).collect(),
+            surface: body
+                .surface
+                .surface
+                .mesh_points
+                .iter()
+                .map(|point| rows[*point as usize].to_array())
+                .collect(),
             size: body.mesh.bounds().diagonal(),
             bytes: world.bytes(),
         })

@@ -17,7 +17,7 @@ pub fn detection(effort: Effort) -> Result<Vec<Figure>, String> {
     ]
     .map(str::to_owned);
     let scene = scene("fast_tool", &settings)?;
-    let triangles = scene.bodies[0].surface.triangles.len();
+    let triangles = scene.bodies[0].surface.surface.triangles.len();
     let mut world: World = scene.model.start(scene.state);
     let samples = effort.choose(20, 200);
     let (mut seconds, mut processor) = (Vec::new(), Vec::new());

@@ -142,6 +142,12 @@ const CUT: Case = Case {
     ..CUBE
 };
 
+/// Of the block whose upper half is cut off, and of the one that was made without it.
+const TOUCHED: Case = Case { scene: "cut_touched", mutation: "bodies.cut.levels.cuts[0].time=99", ..CUT };
+
+/// Without weight, which points beside the cut have of the cells that are gone.
+const WEIGHTLESS: &str = "world.gravity=[0, 0, 0]";
+
 /// Small loads on the bar, whose upper half is cut at the start.
 macro_rules! half_cut {
     ($fixed:literal $(; $more:literal)?) => {
@@ -452,6 +458,66 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::AtMost,
         source: "the whole bar by an independent program; a coarse mesh alone would be stiffer than that, and cut it is not",
         ..CUT
+    },
+    Case {
+        id: "cut_touch_nothing",
+        what: "the most that a finger feels on its way through where cells were cut away, until 0.3 mm before the face that is left",
+        reading: Reading::component("pressed", 2).taking(Statistic::Min).after(40),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "the finger is 20 mm deep in what is gone then, and touches nothing",
+        ..TOUCHED
+    },
+    Case {
+        id: "cut_touch_nothing_late",
+        what: "the same, detected one period late",
+        settings: &["world.collisions=\"one_period_late\""],
+        reading: Reading::component("pressed", 2).taking(Statistic::Min).after(40),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "the finger is 20 mm deep in what is gone then, and touches nothing",
+        ..TOUCHED
+    },
+    Case {
+        id: "cut_touch_as_made",
+        what: "how hard the finger presses on the face that a cut has opened, over how hard on that of a block made so",
+        settings: &[WEIGHTLESS],
+        reading: Reading::Ratio { of: "pressed", to: "pressed_made", component: 2 },
+        reference: 1.0,
+        // what its halt at 0.45 s leaves in motion falls as exp(-α t/2) with α = 20/s: to exp(-5.5)
+        tolerance: Tolerance::Absolute(0.004),
+        source: "the same cells, at rest under the same finger",
+        ..TOUCHED
+    },
+    Case {
+        id: "cut_touch_as_made_late",
+        what: "the same, detected one period late",
+        settings: &[WEIGHTLESS, "world.collisions=\"one_period_late\""],
+        reading: Reading::Ratio { of: "pressed", to: "pressed_made", component: 2 },
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.004),
+        source: "the same cells, at rest under the same finger",
+        ..TOUCHED
+    },
+    Case {
+        id: "cut_touch_weight",
+        what: "what bears a die that has fallen on the face that a cut has opened",
+        reading: Reading::component("carried", 2),
+        reference: 0.019_62,
+        tolerance: Tolerance::Relative(0.005),
+        source: "m g of 2 g",
+        mutation: "bodies.die.material.density=2100",
+        ..TOUCHED
+    },
+    Case {
+        id: "cut_touch_falls",
+        what: "how far a die falls with the lid of the block under it",
+        reading: Reading::component("die", 2),
+        reference: -0.0201,
+        // m g over the stiffness of two of its four lower points, and what the lower half sags
+        tolerance: Tolerance::Absolute(2e-4),
+        source: "its gap of 0.1 mm, and the height of what was cut off",
+        ..TOUCHED
     },
     Case {
         id: "levels_swing_coarse",

@@ -6,6 +6,7 @@ use souple_engine::hand::hand_name;
 use souple_engine::steppers::Stability;
 use souple_engine::{Edit, Force, Grip, Hand, HeldTool, InHand, Tool, World};
 use souple_math::Vec3;
+use souple_mesh::Span;
 use souple_scene::BodyInfo;
 
 use super::Shown;
@@ -80,6 +81,8 @@ pub struct TouchedSurface {
     places: Vec<Vec3>,
     /// Corners among the rows.
     triangles: Vec<[u32; 3]>,
+    /// Of each triangle.
+    spans: Vec<Span>,
     /// Whether all of it is around something: what is thin is touched on both sides, of which triangles have one.
     pub is_closed: bool,
 }
@@ -98,7 +101,28 @@ impl TouchedSurface {
         self.rows.extend(points.iter().map(|point| first + point));
         self.places.extend(points.iter().map(|point| body.mesh.points[*point as usize]));
         self.triangles.extend(shown.triangles.iter().map(|corners| corners.map(|corner| before + corner)));
+        self.spans.extend((0..shown.triangles.len()).map(|triangle| body.surface.span(triangle)));
         self.is_closed &= has_inside(&body.mesh);
+    }
+
+    /// From when until when each triangle is there, as tools are told; none where all stay.
+    fn triangle_spans(&self) -> Vec<[f64; 2]> {
+        told(&self.spans)
+    }
+
+    /// The same of each row.
+    pub fn row_spans(&self) -> Vec<[f64; 2]> {
+        let never = Span { from: f64::INFINITY, until: f64::NEG_INFINITY };
+        let mut spans = vec![never; self.rows.len()];
+        for (corners, span) in self.triangles.iter().zip(&self.spans) {
+            for corner in corners {
+                let of_row = &mut spans[*corner as usize];
+                *of_row = Span { from: of_row.from.min(span.from), until: of_row.until.max(span.until) };
+            }
+        }
+        // what has no triangles about it, as masses of networks, stays
+        spans.iter_mut().filter(|span| **span == never).for_each(|span| *span = Span::ALWAYS);
+        told(&spans)
     }
 
     /// Of a triangle [m²].
@@ -109,6 +133,13 @@ impl TouchedSurface {
         };
         self.triangles.iter().map(area).sum::<f64>() / self.triangles.len().max(1) as f64
     }
+}
+
+fn told(spans: &[Span]) -> Vec<[f64; 2]> {
+    if spans.iter().all(|span| *span == Span::ALWAYS) {
+        return Vec::new();
+    }
+    spans.iter().map(|Span { from, until }| [*from, *until]).collect()
 }
 
 /// The bodies of a system under a tool, as far as that says how firm it is.
@@ -159,6 +190,7 @@ impl Touched {
         let held = HeldTool {
             places: surface.places.clone(),
             triangles: surface.triangles.clone(),
+            spans: surface.triangle_spans(),
             friction: FRICTION,
             // critically damped
             mass: spring * FOLLOWING * FOLLOWING,

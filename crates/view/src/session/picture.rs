@@ -35,7 +35,7 @@ impl Stage {
         let field = |index: usize| world.state().fields[index].clone();
         let skins = session.skins.iter().map(|skin| SketchSkin::Skin(skin.clone(), field(skin.field)));
         let dresses = session.bodies.iter().filter_map(|body| body.dress.as_ref());
-        let dresses = dresses.map(|dress| SketchSkin::Dress(dress.clone(), field(dress.field)));
+        let dresses = dresses.map(|dress| SketchSkin::Dress(dress.clone(), field(dress.field), time));
         Sketch {
             scene: self.number(),
             number,
@@ -67,7 +67,7 @@ fn pieces_of_contours(world: &World, body: &BodyInfo) -> Vec<[Vec3; 2]> {
 fn of_body(session: &Session, body: &BodyInfo, shown: &Arc<Shown>, wanted: &Wanted) -> SketchBody {
     let world = &session.world;
     let links = souple_run::links_of(world, body);
-    let points = &shown.points[..shown.count(wanted.inside)];
+    let points = shown.points_at(world.time(), wanted.inside);
     let field = |field: &usize| {
         let read = FIELDS.entries[*field].build.read(session, body, shown, wanted.inside, &links);
         Some((*field as u32, read?))

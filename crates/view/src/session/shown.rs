@@ -1,8 +1,10 @@
 //! What is drawn of a body: its surface or its links and balls, the points they stand on, and on demand its inside.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use souple_mesh::{Mesh, TriangleSurface};
+use souple_mesh::{Mesh, OpeningSurface, Span, TriangleSurface};
 use souple_scene::BodyInfo;
 
 /// A body as pages see it.
@@ -16,10 +18,14 @@ pub struct Shown {
     pub triangles: Vec<[u32; 3]>,
     /// Those of its elements on the surface, ends among `points`.
     pub edges: Vec<[u32; 2]>,
+    /// When each of these is there; none where all stay.
+    pub edge_spans: Vec<Span>,
     /// Both sides of its triangles are seen.
     pub is_sheet: bool,
     /// Ends among `points`, in the order of the cells; curved ones in straight pieces.
     pub links: Vec<[u32; 2]>,
+    /// When each point of the mesh is of no cell any more [s]; empty where none ever is.
+    loose_at: Vec<f64>,
     outer_cells: CellsAbout,
     all_cells: OnceLock<CellsAbout>,
 }
@@ -35,7 +41,7 @@ pub struct Inside {
 impl Shown {
     pub fn new(body: &BodyInfo) -> Self {
         let mesh = &body.mesh;
-        let TriangleSurface { triangles, mesh_points, .. } = &body.surface;
+        let TriangleSurface { triangles, mesh_points, .. } = &body.surface.surface;
         let mut points = mesh_points.clone();
         let mut is_listed = vec![false; mesh.points.len()];
         points.iter().for_each(|point| is_listed[*point as usize] = true);
@@ -49,14 +55,20 @@ impl Shown {
             outer_count,
             triangles: triangles.clone(),
             edges: Vec::new(),
+            edge_spans: Vec::new(),
             is_sheet: mesh.dimension() == 2,
             links: Vec::new(),
+            loose_at: loose_at(body),
             outer_cells,
             all_cells: OnceLock::new(),
         };
         let number = shown.numbers(mesh);
         let numbered = |pair: [u32; 2]| pair.map(|point| number[point as usize]);
-        shown.edges = mesh.boundary_edges().into_iter().map(numbered).collect();
+        if body.surface.opens() {
+            (shown.edges, shown.edge_spans) = opening_edges(&body.surface);
+        } else {
+            shown.edges = mesh.boundary_edges().into_iter().map(numbered).collect();
+        }
         if mesh.dimension() == 1 {
             // corners stand first, what is between them after
             let along = |nodes: &[u32]| [&nodes[..1], &nodes[2..], &nodes[1..2]].concat();
@@ -71,6 +83,20 @@ impl Shown {
     /// How many points are drawn.
     pub fn count(&self, with_inside: bool) -> usize {
         if with_inside { self.points.len() } else { self.outer_count }
+    }
+
+    /// The points that are drawn at a time [s], of the mesh. What is of no cell any more and falls alone is not seen, and must not be
+    /// what a picture makes room for and colours reach to: another stands for it, of those that are of one the longest.
+    pub fn points_at(&self, time: f64, with_inside: bool) -> Cow<'_, [u32]> {
+        let points = &self.points[..self.count(with_inside)];
+        let is_loose = |point: u32| self.loose_at.get(point as usize).is_some_and(|date| *date <= time);
+        if !points.iter().any(|point| is_loose(*point)) {
+            return Cow::Borrowed(points);
+        }
+        let date = |point: &u32| self.loose_at[*point as usize];
+        let longest = points.iter().copied().max_by(|a, b| date(a).total_cmp(&date(b)));
+        let seen = |point: &u32| longest.filter(|_| is_loose(*point)).unwrap_or(*point);
+        Cow::Owned(points.iter().map(seen).collect())
     }
 
     pub fn cells_about(&self, body: &BodyInfo, with_inside: bool) -> &CellsAbout {
@@ -122,6 +148,31 @@ impl Shown {
     }
 }
 
+/// When each point of a body is of no cell any more [s], infinite where that is never; empty where no cell goes.
+fn loose_at(body: &BodyInfo) -> Vec<f64> {
+    if body.cut_at.is_empty() {
+        return Vec::new();
+    }
+    let mut dates = vec![f64::NEG_INFINITY; body.mesh.points.len()];
+    for (cell, date) in body.mesh.cells().zip(&body.cut_at) {
+        cell.nodes.iter().for_each(|node| dates[*node as usize] = dates[*node as usize].max(*date));
+    }
+    dates
+}
+
+/// The sides of the triangles of a surface that opens, each from when the first of its triangles is there until the last is gone.
+fn opening_edges(surface: &OpeningSurface) -> (Vec<[u32; 2]>, Vec<Span>) {
+    let mut edges: BTreeMap<[u32; 2], Span> = BTreeMap::new();
+    for (corners, span) in surface.surface.triangles.iter().zip(&surface.spans) {
+        for k in 0..3 {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            let known = edges.entry([a.min(b), a.max(b)]).or_insert(*span);
+            *known = Span { from: known.from.min(span.from), until: known.until.max(span.until) };
+        }
+    }
+    edges.into_iter().unzip()
+}
+
 /// Whether there are cells with a volume; edges, sheets and loose masses are all outside.
 pub fn has_inside(mesh: &Mesh) -> bool {
     mesh.dimension() == 3 && mesh.cell_count() > 0
@@ -162,12 +213,13 @@ impl CellsAbout {
         Self { cells, starts, of_points: pairs.into_iter().map(|(_, cell)| cell).collect() }
     }
 
-    /// The mean at each point of what the cells about it have; `values` are those of `cells`.
+    /// The mean at each point of what the cells about it have; `values` are those of `cells`, not a number where they have none.
     fn means(&self, values: &[f64]) -> Vec<f32> {
         let mean = |range: &[u32]| {
             let about = &self.of_points[range[0] as usize..range[1] as usize];
-            let sum: f64 = about.iter().map(|cell| values[*cell as usize]).sum();
-            (sum / about.len().max(1) as f64) as f32
+            let of_cells = about.iter().map(|cell| values[*cell as usize]).filter(|value| !value.is_nan());
+            let (sum, count) = of_cells.fold((0.0, 0_u32), |(sum, count), value| (sum + value, count + 1));
+            (sum / f64::from(count.max(1))) as f32
         };
         self.starts.windows(2).map(mean).collect()
     }

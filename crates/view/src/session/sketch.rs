@@ -43,7 +43,8 @@ pub struct SketchBody {
 /// A surface that has a state of its own.
 pub enum SketchSkin {
     Skin(SkinInfo, FieldState),
-    Dress(DressInfo, FieldState),
+    /// At a time [s].
+    Dress(DressInfo, FieldState, f64),
 }
 
 impl Sketch {
@@ -84,9 +85,9 @@ impl SketchSkin {
                 let (surface, normals) = skin.surface_in(state);
                 FrameSkin { points: surface.points, normals, triangles: surface.triangles }
             }
-            Self::Dress(info, state) => {
+            Self::Dress(info, state, time) => {
                 let points: Vec<Vec3> = info.dress.points(state).collect();
-                let triangles = info.dress.triangles().to_vec();
+                let triangles = info.dress.triangles(*time);
                 FrameSkin { normals: souple_mesh::vertex_normals(&points, &triangles), points, triangles }
             }
         }

@@ -466,8 +466,9 @@ impl Stage {
             } else {
                 (touched.stiffness_of_points(surface.rows.len(), *strength), None)
             };
-            let (shape, values, rows) = (entry.build.shape.to_owned(), values.clone(), surface.rows);
-            tools.push((system, Tool { shape, values, place: *place, stiffness, rows, held }));
+            let (shape, values, spans) = (entry.build.shape.to_owned(), values.clone(), surface.row_spans());
+            let rows = surface.rows;
+            tools.push((system, Tool { shape, values, place: *place, stiffness, rows, spans, held }));
         }
         let edits = self.hands.touch(page, *hand, *size, tools);
         self.take(page, *hand, edits)?;
