@@ -13,14 +13,14 @@ use serde_json::{Value, json};
 
 pub use frame::{Frame, FrameBody, FrameSkin, HandShown, Holds};
 pub use samples::Samples;
-pub use shapes::{inside, network, surface, tool};
+pub use shapes::{SurfaceShape, inside, network, surface, tool};
 pub use wish::Wish;
 
 use crate::hub::Outgoing;
 
 macro_rules! version {
     () => {
-        4
+        5
     };
 }
 
@@ -66,6 +66,10 @@ fn put_u32(bytes: &mut Vec<u8>, number: usize) {
 
 fn put_f32(bytes: &mut Vec<u8>, number: f64) {
     bytes.extend((number as f32).to_le_bytes());
+}
+
+fn put_f64(bytes: &mut Vec<u8>, number: f64) {
+    bytes.extend(number.to_le_bytes());
 }
 
 fn put_vector(bytes: &mut Vec<u8>, vector: souple_math::Vec3) {

@@ -1,22 +1,36 @@
 //! Messages that describe once what frames move: surfaces, links and balls, the inside of bodies, tools.
 
 use souple_math::Vec3;
+use souple_mesh::Span;
 
-use super::{Kind, header, put_f32, put_u32, put_vector};
+use super::{Kind, header, put_f32, put_f64, put_u32, put_vector};
 
-/// Surface `index` of a scene, of bodies first, then of obstacles, and the edges of its elements.
-pub fn surface(
-    scene: u32,
-    index: u16,
-    points: &[Vec3],
-    triangles: &[[u32; 3]],
-    edges: &[[u32; 2]],
-) -> Vec<u8> {
+/// A surface as pages are told of it.
+#[derive(Clone, Debug, Default)]
+pub struct SurfaceShape<'a> {
+    pub points: Vec<Vec3>,
+    pub triangles: &'a [[u32; 3]],
+    /// Of its elements.
+    pub edges: &'a [[u32; 2]],
+    /// When each triangle is there; none where all stay.
+    pub spans: &'a [Span],
+    /// When each edge is.
+    pub edge_spans: &'a [Span],
+}
+
+/// Surface `index` of a scene, of bodies first, then of obstacles.
+pub fn surface(scene: u32, index: u16, shape: &SurfaceShape) -> Vec<u8> {
+    let SurfaceShape { points, triangles, edges, spans, edge_spans } = shape;
     let mut bytes = header(Kind::Surface, index, scene);
-    bytes.reserve(12 + 12 * (points.len() + triangles.len()) + 8 * edges.len());
+    let numbers = 12 * (points.len() + triangles.len()) + 8 * edges.len();
+    bytes.reserve(20 + numbers + 16 * (spans.len() + edge_spans.len()));
     put_surface(&mut bytes, points, triangles);
     put_u32(&mut bytes, edges.len());
     bytes.extend_from_slice(bytemuck::cast_slice(edges));
+    for spans in [spans, edge_spans] {
+        put_u32(&mut bytes, spans.len());
+        spans.iter().flat_map(|span| [span.from, span.until]).for_each(|date| put_f64(&mut bytes, date));
+    }
     bytes
 }
 
@@ -37,12 +51,13 @@ pub fn network(scene: u32, index: u16, links: &[[u32; 2]], radii: &[f64]) -> Vec
     bytes
 }
 
-/// Tetrahedra and faces of the cells of body `index`, each followed by its cell.
+/// Tetrahedra and faces of the cells of body `index`, each followed by its cell, and when each cell goes [s]; no dates where all stay.
 pub fn inside(
     scene: u32,
     index: u16,
     tetrahedra: &[([u32; 4], u32)],
     triangles: &[([u32; 3], u32)],
+    dates: &[f64],
 ) -> Vec<u8> {
     let mut bytes = header(Kind::Inside, index, scene);
     put_u32(&mut bytes, tetrahedra.len());
@@ -53,6 +68,8 @@ pub fn inside(
     for (corners, cell) in triangles {
         corners.iter().chain([cell]).for_each(|number| put_u32(&mut bytes, *number as usize));
     }
+    put_u32(&mut bytes, dates.len());
+    dates.iter().for_each(|date| put_f64(&mut bytes, *date));
     bytes
 }
 

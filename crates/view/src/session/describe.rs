@@ -13,7 +13,7 @@ use super::shown::has_inside;
 use super::stage::Stage;
 use crate::fields::{ARROWS, ArrowKind, FIELDS, Field};
 use crate::hub::{Hub, Outgoing, PageId};
-use crate::protocol::{self, document};
+use crate::protocol::{self, SurfaceShape, document};
 use crate::tools::{Making, TOOLS};
 
 impl Stage {
@@ -29,17 +29,25 @@ impl Stage {
                 binary(protocol::network(self.number(), index as u16, &shown.links, &radii));
             }
         }
-        let rest = |(body, shown): (&BodyInfo, &super::Shown)| {
+        let rest = |body: &BodyInfo, shown: &super::Shown| {
             let points = shown.points[..shown.outer_count].iter();
             points.map(|point| body.mesh.points[*point as usize]).collect::<Vec<_>>()
         };
-        let of_bodies = bodies.map(|pair| (rest(pair), &pair.1.triangles, &pair.1.edges[..]));
+        let of_bodies = bodies.map(|(body, shown)| SurfaceShape {
+            points: rest(body, shown),
+            triangles: &shown.triangles,
+            edges: &shown.edges,
+            spans: &body.surface.spans,
+            edge_spans: &shown.edge_spans,
+        });
         let of_obstacles = self.obstacles().iter().filter_map(|obstacle| match &obstacle.form {
-            Form::Surface { points, triangles, .. } => Some((points.clone(), triangles, &[][..])),
+            Form::Surface { points, triangles, .. } => {
+                Some(SurfaceShape { points: points.clone(), triangles, ..SurfaceShape::default() })
+            }
             Form::Plane { .. } => None,
         });
-        for (index, (points, triangles, edges)) in of_bodies.chain(of_obstacles).enumerate() {
-            binary(protocol::surface(self.number(), index as u16, &points, triangles, edges));
+        for (index, shape) in of_bodies.chain(of_obstacles).enumerate() {
+            binary(protocol::surface(self.number(), index as u16, &shape));
         }
         self.tools().into_iter().for_each(&mut binary);
         tell(self.adjustables());
@@ -56,8 +64,9 @@ impl Stage {
         }
         for (index, (body, shown)) in self.session().bodies.iter().zip(self.shown()).enumerate() {
             if let Some(inside) = shown.inside(&body.mesh) {
+                let super::shown::Inside { tetrahedra, triangles } = &inside;
                 let message =
-                    protocol::inside(self.number(), index as u16, &inside.tetrahedra, &inside.triangles);
+                    protocol::inside(self.number(), index as u16, tetrahedra, triangles, &body.cut_at);
                 let message = Outgoing::Binary(Arc::from(message));
                 pages.iter().for_each(|page| hub.tell(*page, message.clone()));
             }

@@ -155,12 +155,25 @@ pub struct Page {
     pub answers: bool,
     /// Points, triangles and edges of each message of a surface.
     pub surfaces: Vec<[u32; 3]>,
+    /// When the triangles of each are there, and its edges [s].
+    pub spans: Vec<[Vec<[f64; 2]>; 2]>,
     /// Tetrahedra and triangles of each message of the inside of a body.
     pub insides: Vec<[u32; 2]>,
+    /// When the cells of each go [s].
+    pub dates: Vec<Vec<f64>>,
     /// Messages of tools' shapes.
     pub tool_count: u32,
     /// Bytes of the last frame.
     pub frame_bytes: usize,
+}
+
+/// Dates behind their count at a place in a message, so many of each thing that is counted; goes on behind them.
+fn dates(bytes: &[u8], at: &mut usize, each: usize) -> Vec<f64> {
+    let count = each * u32::from_le_bytes(bytes[*at..*at + 4].try_into().unwrap()) as usize;
+    let date = |k: usize| f64::from_le_bytes(bytes[*at + 4 + 8 * k..][..8].try_into().unwrap());
+    let dates = (0..count).map(date).collect();
+    *at += 4 + 8 * count;
+    dates
 }
 
 /// What a test looks at in a frame.
@@ -273,7 +286,9 @@ impl Page {
             documents: Vec::new(),
             answers: true,
             surfaces: Vec::new(),
+            spans: Vec::new(),
             insides: Vec::new(),
+            dates: Vec::new(),
             tool_count: 0,
             frame_bytes: 0,
         })
@@ -318,8 +333,18 @@ impl Page {
                         let [points, triangles] = [number(8), number(12)];
                         let edges = number(16 + 12 * (points + triangles) as usize);
                         self.surfaces.push([points, triangles, edges]);
+                        let mut at = 20 + 12 * (points + triangles) as usize + 8 * edges as usize;
+                        self.spans.push([(); 2].map(|()| {
+                            let spans = dates(&bytes, &mut at, 2);
+                            spans.chunks_exact(2).map(|span| [span[0], span[1]]).collect()
+                        }));
                     }
-                    5 => self.insides.push([number(8), number(12)]),
+                    5 => {
+                        let [tetrahedra, triangles] = [number(8), number(12)];
+                        self.insides.push([tetrahedra, triangles]);
+                        let mut at = 16 + 20 * tetrahedra as usize + 16 * triangles as usize;
+                        self.dates.push(dates(&bytes, &mut at, 1));
+                    }
                     6 => self.tool_count += 1,
                     _ => {}
                 }

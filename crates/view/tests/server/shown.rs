@@ -487,3 +487,58 @@ fn held_tools_do_not_pass() {
     page.document_where("status", |status| status["mode"] == "paused");
     world.assert_replayed();
 }
+
+/// A block of 4 x 2 x 2 cells of six tetrahedra and two meshes, a quarter of which is cut off after 0.1 s.
+const CUT: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [systems.main]
+    stepper = { name = "staggered", halvings = 4 }
+    [bodies.block]
+    mesh = { generate = "bar", size = [0.08, 0.04, 0.04], cells = [4, 2, 2], element = "tet4" }
+    material = { name = "linear", youngs_modulus = "2 kPa", poissons_ratio = 0.3, density = 1000 }
+    [bodies.block.levels]
+    coarser = [{ mesh = { generate = "bar", size = [0.08, 0.04, 0.04], cells = [2, 1, 1], element = "tet4" } }]
+    cuts = [{ region = { box = [[0.06, -1, -1], [1, 1, 1]] }, time = 0.1 }]
+    [[bodies.block.pins]]
+    region = "x_min"
+"#;
+
+/// DEB-54: pages are told of each triangle and edge of a surface that opens when it is there, and of each cell when it goes; classes are
+/// those of all triangles, whatever the time; and a run begun anew is the same.
+#[test]
+fn surfaces_open_where_cells_are_cut() {
+    let world = World::of(CUT);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    page.wish(json!({"do": "colour", "field": "element"}));
+    page.wish(json!({"do": "inside", "is_shown": true}));
+    let triangles = scene["bodies"][0]["surface_triangles"].as_u64().expect("a number") as usize;
+    let frame = page.frame_where(|frame| {
+        frame.time > 0.1 && frame.values.first().is_some_and(|all| all.len() > triangles)
+    });
+    let cells = scene["bodies"][0]["cells"].as_u64().expect("a number") as usize;
+    assert_eq!(frame.values[0].len(), triangles + cells);
+    let [of_triangles, of_edges] = &page.spans[0];
+    assert_eq!([of_triangles.len(), of_edges.len()], [triangles, page.surfaces[0][2] as usize]);
+    let there = |spans: &[[f64; 2]], time: f64| {
+        spans.iter().filter(|[from, until]| *from <= time && time < *until).count()
+    };
+    // two triangles to a square: of 4 x 2 x 2 cells 40 squares, of 3 x 2 x 2 cells 32; three edges to two triangles
+    for (time, count) in [(0.0, 80), (0.0999, 80), (0.1, 64), (9.0, 64)] {
+        assert_eq!([there(of_triangles, time), there(of_edges, time)], [count, count * 3 / 2], "{time} s");
+    }
+    assert_eq!(page.dates[0].iter().filter(|date| **date == 0.1).count(), cells / 4);
+    assert_eq!(page.dates[0].iter().filter(|date| date.is_infinite()).count(), cells - cells / 4);
+}
+
+/// DEB-54: of a display surface the triangles on cells that are cut go, and the walls of the cut come.
+#[test]
+fn dresses_open_where_cells_are_cut() {
+    let world = World::of(&format!("{CUT}[bodies.block.levels.dress]\n"));
+    let mut page = Page::open(&world);
+    let triangles = |frame: &crate::client::Frame| frame.skin_triangles.clone();
+    assert_eq!(triangles(&page.frame_where(|frame| frame.time < 0.095)), [80]);
+    assert_eq!(triangles(&page.frame_where(|frame| frame.time > 0.105)), [64]);
+}

@@ -1,6 +1,6 @@
 // What comes over the wire and how it is read: see docs/protocol.md.
 
-const VERSION = 4;
+const VERSION = 5;
 export const SUBPROTOCOL = `souple.v${VERSION}`;
 
 export type Vector = [number, number, number];
@@ -210,6 +210,10 @@ export interface Surface {
   triangles: Uint32Array;
   /** Of its elements: pairs of points. */
   edges: Uint32Array;
+  /** From when until when each triangle is there [s]; empty where all stay. */
+  spans: Float64Array;
+  /** The same of edges. */
+  edgeSpans: Float64Array;
 }
 
 /** What joins the points of a body, and how large they are. */
@@ -231,6 +235,8 @@ export interface InsideShape {
   tetrahedra: Uint32Array;
   /** Three points and the cell, each; those of a cell one after the other. */
   triangles: Uint32Array;
+  /** When each cell goes [s]; empty where all stay. */
+  dates: Float64Array;
 }
 
 export interface ToolShape {
@@ -332,6 +338,7 @@ export function decode(buffer: ArrayBuffer): Binary | null {
         index: count,
         tetrahedra: new Uint32Array(buffer, 16, 5 * tetrahedra),
         triangles: new Uint32Array(buffer, 16 + 20 * tetrahedra, 4 * triangles),
+        dates: datesAt(view, 16 + 20 * tetrahedra + 16 * triangles, 1),
       };
     }
     case 6: {
@@ -354,14 +361,25 @@ function decodeSurface(buffer: ArrayBuffer, view: DataView, index: number, scene
   const points = view.getUint32(8, true);
   const triangles = view.getUint32(12, true);
   const afterTriangles = 16 + 12 * (points + triangles);
+  const edges = view.getUint32(afterTriangles, true);
+  const afterEdges = afterTriangles + 4 + 8 * edges;
+  const spans = datesAt(view, afterEdges, 2);
   return {
     kind: "surface",
     scene,
     index,
     points: new Float32Array(buffer, 16, 3 * points),
     triangles: new Uint32Array(buffer, 16 + 12 * points, 3 * triangles),
-    edges: new Uint32Array(buffer, afterTriangles + 4, 2 * view.getUint32(afterTriangles, true)),
+    edges: new Uint32Array(buffer, afterTriangles + 4, 2 * edges),
+    spans,
+    edgeSpans: datesAt(view, afterEdges + 4 + 8 * spans.length, 2),
   };
+}
+
+/** Dates behind their count, so many of each thing that is counted; they may begin at any multiple of four. */
+function datesAt(view: DataView, at: number, each: number): Float64Array {
+  const count = each * view.getUint32(at, true);
+  return Float64Array.from({ length: count }, (_, number) => view.getFloat64(at + 4 + 8 * number, true));
 }
 
 /** Reads numbers one after the other. */

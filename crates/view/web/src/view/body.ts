@@ -88,8 +88,13 @@ export class Body {
   private shine = OWN;
   /** Seen itself, whatever skin it wears. */
   private isBare = false;
-  /** The surface as it is drawn. */
-  private readonly creased: Creased;
+  /** The surface as it is drawn, and the numbers of its triangles among all that are ever there. */
+  private creased: Creased;
+  private drawn: Uint32Array;
+  /** When it opens [s], and how often it has. */
+  private readonly dates: number[];
+  private opened = 0;
+  private time = 0;
   private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
   private pins: InstancedMesh<SphereGeometry, MeshStandardMaterial> | null = null;
   private pinned: number[] = [];
@@ -97,14 +102,15 @@ export class Body {
   constructor(
     readonly index: number,
     readonly info: BodyInfo,
-    surface: Surface,
+    private readonly surface: Surface,
     network: NetworkShape | undefined,
     private readonly size: number,
   ) {
-    this.creased = divideAtCreases(surface.points, surface.triangles);
+    this.dates = [...new Set(surface.spans)].filter(Number.isFinite).sort((a, b) => a - b);
+    this.drawn = shownAt(surface.spans, surface.triangles.length / 3, -Infinity);
+    this.creased = divideAtCreases(surface.points, chosen(surface.triangles, 3, this.drawn));
     this.positions = Float32Array.from(surface.points);
     this.normals = new Float32Array(this.positions.length);
-    const moving = (numbers: Float32Array) => new BufferAttribute(numbers, 3).setUsage(DynamicDrawUsage);
     const made = (names: string[], points: number) => {
       const geometry = new BufferGeometry();
       for (const name of names) geometry.setAttribute(name, moving(new Float32Array(3 * points)));
@@ -112,8 +118,7 @@ export class Body {
     };
     const geometry = made(["position", "normal", "color"], this.creased.sources.length);
     geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
-    const film = new BufferAttribute(new Float32Array(this.creased.sources.length), 1);
-    geometry.setAttribute("film", film.setUsage(DynamicDrawUsage));
+    geometry.setAttribute("film", thicknesses(this.creased.sources.length));
     const material = new MeshPhysicalMaterial({
       color: BODY_COLOURS[index % BODY_COLOURS.length]!,
       ...OWN,
@@ -129,7 +134,7 @@ export class Body {
     this.mesh.frustumCulled = false;
     const lines = made(["color"], surface.points.length / 3);
     lines.setAttribute("position", moving(this.positions));
-    lines.setIndex(new BufferAttribute(surface.edges, 1));
+    lines.setIndex(new BufferAttribute(this.edgesAt(-Infinity), 1));
     this.edges = new LineSegments(lines, new LineBasicMaterial({ transparent: true }));
     this.edges.frustumCulled = false;
     this.edges.visible = false;
@@ -142,7 +147,8 @@ export class Body {
   }
 
   /** Goes where a frame says; points of the inside follow those of the outside there, if anybody looks at them. */
-  update(frame: BodyFrame): void {
+  update(frame: BodyFrame, time: number): void {
+    this.open(time);
     if (frame.positions.length < this.positions.length) return;
     // of a world that blew up the last that can be drawn stays
     if (frame.positions.some((number) => !(Math.abs(number) < FAR * this.size))) return;
@@ -209,8 +215,8 @@ export class Body {
     }
     this.setFilm(film);
     this.setOfCells(of === "cells" && values !== undefined);
-    const { sources, triangles } = this.creased;
-    const count = triangles.length / 3;
+    const { sources } = this.creased;
+    const count = this.surface.triangles.length / 3;
     if (values && this.ofCells) {
       this.facets?.update(numbersOf(this.mesh, "position"), numbersOf(this.mesh, "normal"), values, map);
     } else if (values) {
@@ -227,7 +233,7 @@ export class Body {
     const hasInside = this.last.positions.length > this.positions.length || this.info.points === this.info.surface_points;
     if (!hasInside) return;
     const inner: Paint = { values: this.ofCells ? values?.subarray(count) : values, ofCells: this.ofCells, range, map };
-    this.inside?.update(this.last.positions, inner, this.cut, this.explode);
+    this.inside?.update(this.last.positions, inner, this.cut, this.explode, this.time);
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -348,10 +354,10 @@ export class Body {
   }
 
   private setOfCells(ofCells: boolean): void {
-    if (ofCells === this.ofCells) return;
+    if (ofCells === this.ofCells && !(ofCells && !this.facets)) return;
     this.ofCells = ofCells;
     if (ofCells && !this.facets) {
-      this.facets = new Facets(this.creased.triangles, this.mesh.material);
+      this.facets = new Facets(this.creased.triangles, this.drawn, this.mesh.material);
       this.group.add(this.facets.mesh);
     }
     this.setVisible();
@@ -365,6 +371,36 @@ export class Body {
     else if (this.hasFilm) numbers.fill(0);
     if (film || this.hasFilm) attribute.needsUpdate = true;
     this.hasFilm = film !== undefined;
+  }
+
+  /** Draws what is on the surface at a time; a world begun anew is closed again. */
+  private open(time: number): void {
+    this.time = time;
+    const opened = this.dates.filter((date) => date <= time).length;
+    if (opened === this.opened) return;
+    this.opened = opened;
+    const { spans, triangles, points } = this.surface;
+    this.drawn = shownAt(spans, triangles.length / 3, time);
+    this.creased = divideAtCreases(points, chosen(triangles, 3, this.drawn));
+    const { geometry } = this.mesh;
+    // buffers of another length are others
+    geometry.dispose();
+    for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, moving(new Float32Array(3 * this.creased.sources.length)));
+    geometry.setAttribute("film", thicknesses(this.creased.sources.length));
+    this.hasFilm = false;
+    geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
+    this.edges.geometry.setIndex(new BufferAttribute(this.edgesAt(time), 1));
+    if (this.facets) {
+      this.group.remove(this.facets.mesh);
+      this.facets.dispose();
+      this.facets = null;
+    }
+    this.moved();
+  }
+
+  private edgesAt(time: number): Uint32Array {
+    const { edges, edgeSpans } = this.surface;
+    return chosen(edges, 2, shownAt(edgeSpans, edges.length / 2, time));
   }
 
   private moved(): void {
@@ -405,6 +441,29 @@ export class Body {
 
 function numbersOf({ geometry }: { geometry: BufferGeometry }, name: string): Float32Array {
   return geometry.getAttribute(name).array as Float32Array;
+}
+
+function moving(numbers: Float32Array): BufferAttribute {
+  return new BufferAttribute(numbers, 3).setUsage(DynamicDrawUsage);
+}
+
+/** Of a film on points that has none yet. */
+function thicknesses(points: number): BufferAttribute {
+  return new BufferAttribute(new Float32Array(points), 1).setUsage(DynamicDrawUsage);
+}
+
+/** The numbers of the things, of so many, that are there at a time; all where they have no spans. */
+function shownAt(spans: Float64Array, count: number, time: number): Uint32Array {
+  const all = Array.from({ length: count }, (_, number) => number);
+  const isThere = (number: number) => spans[2 * number]! <= time && time < spans[2 * number + 1]!;
+  return Uint32Array.from(spans.length > 0 ? all.filter(isThere) : all);
+}
+
+/** The numbers of some things that have so many each. */
+function chosen(numbers: Uint32Array, each: number, which: Uint32Array): Uint32Array {
+  const some = new Uint32Array(each * which.length);
+  which.forEach((thing, place) => some.set(numbers.subarray(each * thing, each * (thing + 1)), each * place));
+  return some;
 }
 
 /** Three numbers of each source. */

@@ -9,9 +9,10 @@ export class Facets {
   private readonly normals: Float32Array;
   private readonly colours: Float32Array;
 
-  /** `material` is that of the surface: what is set there holds here. */
+  /** `numbers` are those by which triangles have values; `material` is that of the surface: what is set there holds here. */
   constructor(
     private readonly triangles: Uint32Array,
+    private readonly numbers: Uint32Array,
     material: MeshPhysicalMaterial,
   ) {
     const geometry = new BufferGeometry();
@@ -29,12 +30,12 @@ export class Facets {
     this.mesh.frustumCulled = false;
   }
 
-  /** `values` are those of triangles. */
+  /** `values` are those of triangles by their numbers. */
   update(positions: Float32Array, normals: Float32Array, values: Float32Array, map: Float32Array): void {
-    const { triangles } = this;
+    const { triangles, numbers } = this;
     for (let corner = 0; corner < triangles.length; corner++) {
       const from = 3 * triangles[corner]!;
-      const colour = 3 * values[Math.floor(corner / 3)]!;
+      const colour = 3 * values[numbers[Math.floor(corner / 3)]!]!;
       for (let k = 0; k < 3; k++) {
         this.positions[3 * corner + k] = positions[from + k]!;
         this.normals[3 * corner + k] = normals[from + k]!;

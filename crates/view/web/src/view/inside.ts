@@ -19,6 +19,7 @@ export class Inside {
   private readonly section: Sheet;
   private readonly cells: Sheet;
   private heights = new Float32Array(0);
+  private time = 0;
 
   constructor(
     private readonly shape: InsideShape,
@@ -30,8 +31,9 @@ export class Inside {
     this.group.add(this.section.mesh, this.cells.mesh);
   }
 
-  /** `positions` are those of all points. */
-  update(positions: Float32Array, paint: Paint, cut: Plane | null, explode: number): void {
+  /** `positions` are those of all points, at a time: cells that have gone by then are not there. */
+  update(positions: Float32Array, paint: Paint, cut: Plane | null, explode: number, time: number): void {
+    this.time = time;
     const isWhole = explode === 0;
     this.section.mesh.visible = cut !== null && isWhole;
     this.cells.mesh.visible = !isWhole;
@@ -46,6 +48,10 @@ export class Inside {
   dispose(): void {
     this.section.dispose();
     this.cells.dispose();
+  }
+
+  private isGone(cell: number): boolean {
+    return this.shape.dates.length > 0 && this.shape.dates[cell]! <= this.time;
   }
 
   /** The section of each tetrahedron that the plane meets. */
@@ -64,6 +70,7 @@ export class Inside {
     const left: number[] = [];
     const gone: number[] = [];
     for (let t = 0; t < tetrahedra.length; t += 5) {
+      if (this.isGone(tetrahedra[t + 4]!)) continue;
       left.length = 0;
       gone.length = 0;
       for (let k = 0; k < 4; k++) {
@@ -105,6 +112,10 @@ export class Inside {
       const own = [0, 0, 0];
       for (; end < triangles.length && triangles[end + 3] === cell; end += 4) {
         for (let k = 0; k < 9; k++) own[k % 3]! += positions[3 * triangles[end + Math.floor(k / 3)]! + (k % 3)]!;
+      }
+      if (this.isGone(cell)) {
+        first = end;
+        continue;
       }
       const corners = (3 * (end - first)) / 4;
       const offset = own.map((sum, k) => (sum / corners - middle[k]!) * explode);

@@ -264,7 +264,7 @@ export class Picture {
 
   show(frame: Frame): void {
     this.last = frame;
-    frame.bodies.forEach((body, index) => this.bodies[index]?.update(body));
+    frame.bodies.forEach((body, index) => this.bodies[index]?.update(body, frame.time));
     frame.skins.forEach((skin, index) => this.skins[index]?.update(skin));
     this.contours.update(frame.contours);
     this.obstacles?.move(frame.poses);
