@@ -299,9 +299,11 @@ impl Marks {
         });
     }
 
-    /// Tears the vessels of what is cut in a period, from after its start to its end [s].
-    fn cut(&self, start: f64, end: f64, done: &mut Done) {
-        let due = self.gashes.iter().filter(|gash| start < gash.time && gash.time <= end);
+    /// Tears the vessels of what is cut in a period, from its start to before its end [s].
+    fn cut(&self, step: &FieldStep, done: &mut Done) {
+        // what rounding leaves between two periods belongs to both: torn twice is torn
+        let from = step.start - 1e-9 * step.timestep;
+        let due = self.gashes.iter().filter(|gash| (from..step.start + step.timestep).contains(&gash.time));
         for point in due.flat_map(|gash| &gash.points) {
             if let Some(Some(node)) = self.node_of_point.get(*point as usize) {
                 done.torn[*node as usize] = true;
@@ -321,7 +323,7 @@ impl Marks {
         let count = self.points.len();
         let (marks, blood) = values.split_at_mut(LISTS * count);
         let (film, open) = blood.split_at_mut(count);
-        self.cut(step.start, step.start + step.timestep, done);
+        self.cut(step, done);
         for (node, (film, open)) in film.iter_mut().zip(open.iter_mut()).enumerate() {
             if done.torn[node] {
                 *open = 1.0;

@@ -80,7 +80,7 @@ fn pressure_is_that_of_the_pressed_side() {
             &format!("shape = \"floor\"\nregion = {region}"),
         );
         let read = scene(&text).unwrap();
-        let surface = read.bodies[0].surface.clone();
+        let surface = read.bodies[0].surface.surface.clone();
         let mut areas = vec![0.0; surface.points.len()];
         for (triangle, corners) in surface.triangles.iter().enumerate() {
             let below = (-surface.area_vector(triangle as u32).y).max(0.0);

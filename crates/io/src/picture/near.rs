@@ -181,6 +181,7 @@ mod tests {
             place: Vec3::new(x, 1.0, z),
             normal: [0.0, 1.0, 0.0],
             paint: PaintAt::Value(z as f32),
+            film: 0.0,
         };
         let count = |z: [f64; 3]| {
             let corners = [0, 1, 2].map(|k| corner(k as f64, z[k]));

@@ -488,7 +488,7 @@ fn held_tools_do_not_pass() {
     world.assert_replayed();
 }
 
-/// A block of 4 x 2 x 2 cells of six tetrahedra and two meshes, a quarter of which is cut off after 0.1 s.
+/// A block of 4 x 2 x 2 cells of six tetrahedra and two meshes, a quarter of which is cut off after a second.
 const CUT: &str = r#"
     format = 1
     [world]
@@ -500,7 +500,7 @@ const CUT: &str = r#"
     material = { name = "linear", youngs_modulus = "2 kPa", poissons_ratio = 0.3, density = 1000 }
     [bodies.block.levels]
     coarser = [{ mesh = { generate = "bar", size = [0.08, 0.04, 0.04], cells = [2, 1, 1], element = "tet4" } }]
-    cuts = [{ region = { box = [[0.06, -1, -1], [1, 1, 1]] }, time = 0.1 }]
+    cuts = [{ region = { box = [[0.06, -1, -1], [1, 1, 1]] }, time = 1 }]
     [[bodies.block.pins]]
     region = "x_min"
 "#;
@@ -516,7 +516,7 @@ fn surfaces_open_where_cells_are_cut() {
     page.wish(json!({"do": "inside", "is_shown": true}));
     let triangles = scene["bodies"][0]["surface_triangles"].as_u64().expect("a number") as usize;
     let frame = page.frame_where(|frame| {
-        frame.time > 0.1 && frame.values.first().is_some_and(|all| all.len() > triangles)
+        frame.time > 1.0 && frame.values.first().is_some_and(|all| all.len() > triangles)
     });
     let cells = scene["bodies"][0]["cells"].as_u64().expect("a number") as usize;
     assert_eq!(frame.values[0].len(), triangles + cells);
@@ -526,10 +526,10 @@ fn surfaces_open_where_cells_are_cut() {
         spans.iter().filter(|[from, until]| *from <= time && time < *until).count()
     };
     // two triangles to a square: of 4 x 2 x 2 cells 40 squares, of 3 x 2 x 2 cells 32; three edges to two triangles
-    for (time, count) in [(0.0, 80), (0.0999, 80), (0.1, 64), (9.0, 64)] {
+    for (time, count) in [(0.0, 80), (0.999, 80), (1.0, 64), (9.0, 64)] {
         assert_eq!([there(of_triangles, time), there(of_edges, time)], [count, count * 3 / 2], "{time} s");
     }
-    assert_eq!(page.dates[0].iter().filter(|date| **date == 0.1).count(), cells / 4);
+    assert_eq!(page.dates[0].iter().filter(|date| **date == 1.0).count(), cells / 4);
     assert_eq!(page.dates[0].iter().filter(|date| date.is_infinite()).count(), cells - cells / 4);
 }
 
@@ -539,6 +539,6 @@ fn dresses_open_where_cells_are_cut() {
     let world = World::of(&format!("{CUT}[bodies.block.levels.dress]\n"));
     let mut page = Page::open(&world);
     let triangles = |frame: &crate::client::Frame| frame.skin_triangles.clone();
-    assert_eq!(triangles(&page.frame_where(|frame| frame.time < 0.095)), [80]);
-    assert_eq!(triangles(&page.frame_where(|frame| frame.time > 0.105)), [64]);
+    assert_eq!(triangles(&page.frame_where(|frame| frame.time < 0.995)), [80]);
+    assert_eq!(triangles(&page.frame_where(|frame| frame.time > 1.005)), [64]);
 }
