@@ -43,7 +43,9 @@ pub fn of_bodies(session: &Session) -> Vec<String> {
                 .is_some_and(|field| field.volume > 0.0 && field.current_volume <= 0.0)
         };
         let cells = body.mesh.cell_count();
-        let out: Vec<usize> = (0..cells).filter(is_out).collect();
+        // what is cut is no matter any more
+        let is_whole = |cell: &usize| body.is_whole(*cell, session.world.time());
+        let out: Vec<usize> = (0..cells).filter(is_whole).filter(is_out).collect();
         if let Some(first) = out.first() {
             doubts.push(format!(
                 "{} of {cells} of body `{}` {} inside out at the end, the first cell {first}: no matter does that, and what is read off the body \
