@@ -284,7 +284,7 @@ pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
 }
 
 /// What points of all bodies have.
-const DISPLACEMENT: &str = "displacement";
+pub(crate) const DISPLACEMENT: &str = "displacement";
 const VELOCITY: &str = "velocity";
 
 /// What a skin's points have and no body's do.

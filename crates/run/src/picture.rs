@@ -32,6 +32,10 @@ pub fn write_last(
         let colours = map_of(TISSUE).unwrap_or_default();
         figure = Figure { colour_by: Some(TISSUE.to_owned()), colours, edges: EdgeStyle::Hidden, ..figure };
     }
+    // where no marks are shown, a texture is
+    if !moment.has_field(TISSUE) && session.bodies.iter().any(|body| body.texture.is_some()) {
+        figure = Figure { colour_by: None, edges: EdgeStyle::Hidden, ..figure };
+    }
     let plain = Figure { colour_by: None, ..figure.clone() };
     // bodies without stress are shown in colours of their own
     let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {

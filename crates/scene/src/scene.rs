@@ -10,6 +10,7 @@ use std::sync::Arc;
 use souple_engine::{Census, FieldState, InHand, Levels, Model, State, UnknownKind, World};
 use souple_formal::Formula;
 use souple_haptics::{Between, DeviceChoice, Port};
+use souple_io::picture::Texture;
 use souple_math::Vec3;
 use souple_mesh::{Mesh, OpeningSurface};
 use souple_models::frames::{Carried, FramesReport};
@@ -93,6 +94,8 @@ pub struct BodyInfo {
     pub dress: Option<DressInfo>,
     /// What tools leave on its surface.
     pub marks: Option<MarksInfo>,
+    /// Of its surface, and of its dress.
+    pub texture: Option<Arc<Texture>>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
     /// where no body is a network.
     pub radii: Vec<f64>,
@@ -477,6 +480,7 @@ impl BodyInfo {
             reduced,
             dress: None,
             marks: None,
+            texture: None,
             radii,
             contours,
         }

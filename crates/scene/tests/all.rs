@@ -24,3 +24,4 @@ mod scenes;
 mod skins;
 mod split;
 mod surfaces;
+mod textures;

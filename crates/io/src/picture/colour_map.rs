@@ -146,6 +146,15 @@ impl ColourMap {
         }
     }
 
+    /// The colour of tissue that has one of its own, by a value as that of [`ColourMap::Tissue`], 0 to 1; NaN is grey.
+    pub fn tissue_of(own: Colour, value: f64) -> Colour {
+        if value.is_nan() {
+            return Colour([0.35; 3]);
+        }
+        let [charred, scorched, _, pale, white] = TISSUE.map(Colour::from_screen);
+        between([charred, scorched, own, pale, white], value.clamp(0.0, 1.0))
+    }
+
     /// The colour of a value, 0 to 1; NaN is grey.
     pub fn colour(self, value: f64) -> Colour {
         if value.is_nan() {
@@ -191,10 +200,14 @@ fn of_kind(t: f64) -> Colour {
 const TISSUE: [[u8; 3]; 5] = [[26, 20, 18], [92, 50, 30], [150, 52, 46], [206, 140, 124], [240, 222, 208]];
 
 fn tissue(t: f64) -> Colour {
-    let place = t * (TISSUE.len() - 1) as f64;
-    let first = (place as usize).min(TISSUE.len() - 2);
-    let [from, to] = [TISSUE[first], TISSUE[first + 1]].map(Colour::from_screen);
-    from.mixed(to, (place - first as f64) as f32)
+    between(TISSUE.map(Colour::from_screen), t)
+}
+
+/// Straight lines between colours at even distances.
+fn between(colours: [Colour; 5], t: f64) -> Colour {
+    let place = t * (colours.len() - 1) as f64;
+    let first = (place as usize).min(colours.len() - 2);
+    colours[first].mixed(colours[first + 1], (place - first as f64) as f32)
 }
 
 /// The colour of this lightness and hue, its chroma no higher than wished and than a screen can show.

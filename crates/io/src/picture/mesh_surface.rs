@@ -2,11 +2,13 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, facet_triangles, polygon_triangles};
+use souple_mesh::{Cell, ElementKind, Mesh, facet_triangles, polygon_triangles, vertex_normals};
 
-use super::surface::{Paint, Surface};
+use super::surface::{Laid, Paint, Surface};
+use super::texture::Texture;
 use super::tubes::along;
 
 /// A place between two points of a mesh: `x = (1 - share) x_from + share x_to`.
@@ -253,6 +255,14 @@ impl MeshSurface {
         for (point, source) in self.surface.points.iter_mut().zip(&self.points) {
             *point = source.of(&positions);
         }
+    }
+
+    /// Lays a texture on, by where each point of the mesh rests [m].
+    pub fn texture(&mut self, texture: &Arc<Texture>, rest: &[Vec3]) {
+        let rest = self.with_middles(rest);
+        let places: Vec<Vec3> = self.points.iter().map(|point| point.of(&rest)).collect();
+        let normals = vertex_normals(&places, &self.surface.triangles);
+        self.surface.texture = Some(Laid { texture: Arc::clone(texture), places, normals });
     }
 
     /// Lays blood over the paint, of a thickness for each point of the mesh [m].

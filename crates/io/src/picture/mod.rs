@@ -24,6 +24,7 @@ mod raster;
 mod shadow;
 mod stroke;
 mod surface;
+mod texture;
 mod tubes;
 
 use souple_math::Vec3;
@@ -36,7 +37,7 @@ use layout::Layout;
 use light::Lamps;
 use marks::Placed;
 use near::Corner;
-use raster::{BallPaint, PaintAt, Painted, Samples};
+use raster::{BallPaint, PaintAt, Painted, Samples, Textured};
 use shadow::Shadow;
 
 pub use animated_png::write_animated_png;
@@ -53,7 +54,8 @@ pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
 pub use marks::{ArrowKey, LEGEND, Label, Marks, MarksStrip};
 pub use mesh_surface::{Between, Cut, MeshSurface};
-pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
+pub use surface::{EdgeStyle, Faces, Laid, Paint, Stroke, StrokeShape, Surface};
+pub use texture::{MOST_TEXELS, PATTERNS, Pattern, Texture, TextureFigure, read_texture};
 
 /// Everything that a picture shows and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -373,7 +375,7 @@ impl Picture {
         }
     }
 
-    fn painted(&self, camera: &Camera, range: (f64, f64)) -> Vec<Painted> {
+    fn painted(&self, camera: &Camera, range: (f64, f64)) -> Vec<Painted<'_>> {
         let share = |value: f64| PaintAt::Value(self.scale.share(value, range) as f32);
         let mut painted = Vec::new();
         for surface in &self.surfaces {
@@ -391,6 +393,7 @@ impl Picture {
                     normal: normals[triangle][k].to_array().map(|component| component as f32),
                     paint: paint[k],
                     film: surface.film.get(corners[k] as usize).map_or(0.0, |film| *film as f32),
+                    rest: surface.texture.as_ref().map_or([Vec3::ZERO; 2], |laid| laid.at(corners[k])),
                 };
                 let edges = [0, 1, 2].map(|edge: usize| all[edge] && marked[edge]);
                 let before = near::before_eye(camera, [0, 1, 2].map(corner), edges);
@@ -399,6 +402,10 @@ impl Picture {
                     normals: corners.map(|corner| corner.normal),
                     paint: corners.map(|corner| corner.paint),
                     film: corners.map(|corner| corner.film),
+                    textured: surface.texture.as_ref().map(|laid| Textured {
+                        texture: &laid.texture,
+                        rest: corners.map(|corner| corner.rest),
+                    }),
                     edges,
                     wireframe: surface.edge_style == EdgeStyle::Wireframe,
                     map: self.colours,

@@ -13,6 +13,8 @@ pub(super) struct Corner {
     pub paint: PaintAt,
     /// Blood [m].
     pub film: f32,
+    /// Where it rests [m], and the normal there.
+    pub rest: [Vec3; 2],
 }
 
 impl Corner {
@@ -24,12 +26,14 @@ impl Corner {
             (PaintAt::Colour(a), PaintAt::Colour(b)) => PaintAt::Colour(a.mixed(b, part)),
             (paint, _) => paint,
         };
+        let rest = [0, 1].map(|of: usize| self.rest[of] + (other.rest[of] - self.rest[of]) * share);
         let normal = [0, 1, 2].map(|axis: usize| mixed(self.normal[axis], other.normal[axis]));
         Self {
             place: self.place + (other.place - self.place) * share,
             normal,
             paint,
             film: mixed(self.film, other.film),
+            rest,
         }
     }
 }
@@ -182,6 +186,7 @@ mod tests {
             normal: [0.0, 1.0, 0.0],
             paint: PaintAt::Value(z as f32),
             film: 0.0,
+            rest: [Vec3::ZERO; 2],
         };
         let count = |z: [f64; 3]| {
             let corners = [0, 1, 2].map(|k| corner(k as f64, z[k]));

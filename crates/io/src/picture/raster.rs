@@ -1,11 +1,14 @@
 //! Triangles and strokes into samples, the nearest one wins.
 
+use souple_math::Vec3;
+
 use super::balls::Ball;
 use super::blood;
 use super::camera::{Camera, Projected};
 use super::colour::Colour;
 use super::colour_map::ColourMap;
 use super::surface::Faces;
+use super::texture::Texture;
 
 /// What is seen at one place.
 #[derive(Clone, Copy, Debug)]
@@ -47,18 +50,35 @@ pub(super) struct Samples {
 
 /// A triangle ready to be drawn: corners in pixels, normals, paint at the corners.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Painted {
+pub(super) struct Painted<'a> {
     pub corners: [Projected; 3],
     pub normals: [[f32; 3]; 3],
     pub paint: [PaintAt; 3],
     /// Blood at the corners [m].
     pub film: [f32; 3],
+    pub textured: Option<Textured<'a>>,
     /// Whether the edges 01, 12, 20 are lines.
     pub edges: [bool; 3],
     pub wireframe: bool,
     pub map: ColourMap,
     pub faces: Faces,
     pub see_through: bool,
+}
+
+/// A texture, and of the corners where they rest [m] and the normals there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Textured<'a> {
+    pub texture: &'a Texture,
+    pub rest: [[Vec3; 2]; 3],
+}
+
+impl Textured<'_> {
+    fn colour(&self, weights: [f32; 3]) -> Colour {
+        let of = |part: usize| -> Vec3 {
+            self.rest.iter().zip(weights).map(|(rest, weight)| rest[part] * f64::from(weight)).sum()
+        };
+        self.texture.colour(of(0), of(1).try_normalised().unwrap_or(Vec3::Z))
+    }
 }
 
 /// A colour, or a value that becomes a colour after interpolation.
@@ -226,7 +246,7 @@ fn edge_heights([a, b, c]: [Projected; 3], area: f64) -> [f64; 3] {
     [length(b, c), length(c, a), length(a, b)].map(|side| if side > 0.0 { area.abs() / side } else { 0.0 })
 }
 
-impl Painted {
+impl Painted<'_> {
     fn sample(&self, weights: [f32; 3], inverse_depth: f32, inside: bool) -> Sample {
         let mut normal = [0.0; 3];
         for (weight, corner) in weights.iter().zip(&self.normals) {
@@ -247,14 +267,18 @@ impl Painted {
     }
 
     fn albedo(&self, weights: [f32; 3]) -> Colour {
+        let own = self.textured.as_ref().map(|textured| textured.colour(weights));
         let mut value = 0.0;
         for (weight, paint) in weights.iter().zip(&self.paint) {
             match paint {
-                PaintAt::Colour(colour) => return *colour,
+                PaintAt::Colour(colour) => return own.unwrap_or(*colour),
                 PaintAt::Value(at) => value += weight * at,
             }
         }
-        self.map.colour(f64::from(value))
+        match own {
+            Some(own) => ColourMap::tissue_of(own, f64::from(value)),
+            None => self.map.colour(f64::from(value)),
+        }
     }
 }
 

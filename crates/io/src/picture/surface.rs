@@ -1,10 +1,13 @@
 //! What a picture shows: surfaces with their paint, and strokes.
 
+use std::sync::Arc;
+
 use souple_math::Vec3;
 
 use super::balls::Ball;
 use super::colour::Colour;
 use super::colour_scale::ColourScale;
+use super::texture::Texture;
 use crate::IoError;
 
 /// Triangles with their paint.
@@ -22,10 +25,29 @@ pub struct Surface {
     pub paint: Paint,
     /// Thickness of the blood on the points [m], which is seen over the paint and shines; empty: none.
     pub film: Vec<f64>,
+    /// In the place of a plain colour, and of the colour of tissue that nothing was done to; of a paint by other values there is none.
+    pub texture: Option<Laid>,
     pub edge_style: EdgeStyle,
     pub faces: Faces,
     /// Other surfaces behind it show through; where there are none, it is solid. Such surfaces come last in a picture.
     pub see_through: bool,
+}
+
+/// A texture as it lies on a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Laid {
+    pub texture: Arc<Texture>,
+    /// Where the points rest [m].
+    pub places: Vec<Vec3>,
+    /// Of the surface there, of any length.
+    pub normals: Vec<Vec3>,
+}
+
+impl Laid {
+    /// Where a point rests, and the normal there.
+    pub(super) fn at(&self, point: u32) -> [Vec3; 2] {
+        [self.places[point as usize], self.normals[point as usize]]
+    }
 }
 
 /// Which sides of a surface are seen.
@@ -125,6 +147,12 @@ impl Surface {
                 self.film.len(),
                 format!("{count}, one for each point"),
             );
+        }
+        if let Some(Laid { places, normals, .. }) = &self.texture
+            && (places.len(), normals.len()) != (count, count)
+        {
+            let expected = format!("{count}, one for each point");
+            return refuse("the number of places at rest", places.len().min(normals.len()), expected);
         }
         match &self.paint {
             Paint::PointScalar(values) if values.len() != count + self.balls.len() => {

@@ -306,3 +306,56 @@ fn pictures_do_not_depend_on_the_place() {
     let off = near.pixels.iter().zip(&far.pixels).filter(|(a, b)| steps(a, b) > 2).count();
     assert!(off < near.pixels.len() / 1000, "{off} pixels differ");
 }
+
+/// A texture goes with the matter: a ball that has moved away has the same picture; a tissue that is charred shows none of it, and blood
+/// hides it.
+#[test]
+fn textures_stick_to_matter() {
+    let mesh = ball("hex8");
+    let colours = [[30, 40, 200], [220, 220, 60]].map(Colour::from_screen);
+    let figure = TextureFigure::Pattern(Pattern::Spots, colours);
+    let texture = std::sync::Arc::new(Texture { figure, size: 0.3 });
+    let drawn = |shift: Vec3, value: Option<f64>, film: f64| {
+        let mut of = MeshSurface::of(&mesh);
+        let count = mesh.points.len();
+        if let Some(value) = value {
+            of.paint_points(&vec![value; count]);
+        }
+        of.texture(&texture, &mesh.points);
+        of.cover(&vec![film; count]);
+        of.move_to(&mesh.points.iter().map(|point| *point + shift).collect::<Vec<_>>());
+        let picture = Picture {
+            surfaces: vec![of.surface],
+            colours: ColourMap::Tissue,
+            legend: None,
+            view: View::along(-Vec3::Z, Vec3::Y),
+            size: [160, 160],
+            ..Picture::default()
+        };
+        picture.render().unwrap()
+    };
+    let whole = drawn(Vec3::ZERO, None, 0.0);
+    let count =
+        |image: &Image, is: fn([u8; 3]) -> bool| image.pixels.iter().filter(|pixel| is(**pixel)).count();
+    let [blue, yellow, red]: [fn([u8; 3]) -> bool; 3] = [
+        |[red, _, blue]| blue > red.saturating_add(60),
+        |[red, _, blue]| red > blue.saturating_add(60),
+        |[red, green, _]| red > 60 && red > green.saturating_mul(3),
+    ];
+    assert!(
+        count(&whole, blue) > 2000 && count(&whole, yellow) > 400,
+        "{} {}",
+        count(&whole, blue),
+        count(&whole, yellow)
+    );
+    let moved = drawn(Vec3::new(3.0, -1.0, 2.0), None, 0.0);
+    let apart = |a: &[u8; 3], b: &[u8; 3]| (0..3).any(|k| a[k].abs_diff(b[k]) > 8);
+    let differing = whole.pixels.iter().zip(&moved.pixels).filter(|(a, b)| apart(a, b)).count();
+    // a pixel of the outline here and there
+    assert!(differing < 160, "{differing}");
+    assert_eq!(drawn(Vec3::ZERO, Some(0.0), 0.0).pixels, whole.pixels);
+    let charred = drawn(Vec3::ZERO, Some(-1.0), 0.0);
+    assert!(count(&charred, blue) + count(&charred, yellow) < 100);
+    let bloody = drawn(Vec3::ZERO, None, 5e-3);
+    assert!(count(&bloody, red) > 8000 && count(&bloody, blue) < 100, "{}", count(&bloody, red));
+}

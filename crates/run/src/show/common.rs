@@ -1,5 +1,6 @@
 //! What all pictures of a show have in common, so that neither camera nor colours jump.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use souple_io::picture::{ColourMap, ColourScale, Cut, Framed, MeshSurface};
@@ -400,6 +401,14 @@ impl BodyMoment {
     /// Of each point of a network whether it stands for ground or a wall, which nothing makes room for and which throws no shade.
     pub(super) fn grounds(&self) -> Vec<bool> {
         souple_scene::grounds(&self.mesh, self.radii().unwrap_or_default())
+    }
+
+    /// Where its points rest [m]; as its mesh has them, of what tells no displacement.
+    pub(super) fn rest(&self) -> Cow<'_, [Vec3]> {
+        match vectors(self, crate::frames::DISPLACEMENT) {
+            Some(moved) => self.positions.iter().zip(moved).map(|(x, moved)| *x - moved).collect(),
+            None => Cow::Borrowed(&self.mesh.points),
+        }
     }
 
     /// How thick blood lies on each point [m]; `None` where nothing bleeds.

@@ -1,10 +1,12 @@
 //! How a run is drawn: from where, in what colours, cut open, taken apart, with arrows.
 
+use std::sync::Arc;
+
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
     ArrowKey, Backdrop, Between, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground,
-    Label, Legend, LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme,
-    View,
+    Label, Legend, LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Texture,
+    Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
@@ -196,7 +198,7 @@ impl Figure {
         // colours of bodies go by their number among those that are seen
         let seen = moment.bodies.iter().filter(|body| !self.hides(moment, body)).enumerate();
         for (index, body) in seen.filter(|(_, body)| body.is_drawable()) {
-            surfaces.extend(self.surfaces(body, index, common));
+            surfaces.extend(self.surfaces(body, index, common, stage.texture(&body.name)));
             for (number, frame) in
                 body.frames.iter().enumerate().filter(|(_, [origin, ..])| self.is_left(*origin))
             {
@@ -278,8 +280,17 @@ impl Figure {
     }
 
     /// What is seen of a body: its surface, or its links, those of each state in a colour, and its balls.
-    fn surfaces(&self, body: &BodyMoment, index: usize, common: &Common) -> Vec<Surface> {
+    fn surfaces(
+        &self,
+        body: &BodyMoment,
+        index: usize,
+        common: &Common,
+        texture: Option<&Arc<Texture>>,
+    ) -> Vec<Surface> {
         let quantity = self.quantity();
+        // colours that are read have none of a texture in them
+        let is_look = quantity.as_ref().is_none_or(Quantity::is_look);
+        let texture = texture.filter(|_| is_look && !body.is_of_edges());
         let is_coloured = quantity.is_some();
         let film = body.film().filter(|_| quantity.as_ref().is_some_and(Quantity::is_look));
         let values = quantity.as_ref().and_then(|quantity| quantity.at_points(body));
@@ -296,6 +307,9 @@ impl Figure {
             }
             if let Some(film) = film {
                 of.cover(film);
+            }
+            if let Some(texture) = texture {
+                of.texture(texture, &body.rest());
             }
             of.surface
         };

@@ -1,10 +1,11 @@
 //! What stands around the bodies of a scene: shapes that they touch, and which way is up.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use souple_engine::obstacle::{Form, Obstacle, Side};
 use souple_engine::{Force, Model};
-use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface};
+use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface, Texture};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_models::frames::ROWS_OF_FRAME;
@@ -22,13 +23,15 @@ pub struct Stage {
     /// Stress for each unit of strain of the stiffest body [Pa]; zero where it is not known.
     pub stiffness: f64,
     obstacles: Vec<Obstacle>,
+    /// Of bodies, by their names.
+    textures: Vec<(String, Arc<Texture>)>,
 }
 
 impl Default for Stage {
     /// Nothing stands around; `y` is up.
     fn default() -> Self {
         let view = PictureSpec::default().view(Vec3::ZERO);
-        Self { title: String::new(), view, stiffness: 0.0, obstacles: Vec::new() }
+        Self { title: String::new(), view, stiffness: 0.0, obstacles: Vec::new(), textures: Vec::new() }
     }
 }
 
@@ -60,7 +63,8 @@ impl Stage {
     pub fn of_model(model: &Model, bodies: &[BodyInfo], view: PictureView) -> Self {
         let obstacles = obstacles_of(model.systems.iter().flat_map(|system| &system.forces));
         let stiffness = bodies.iter().filter_map(|body| stiffness(model, body)).fold(0.0, f64::max);
-        Self { title: String::new(), view, stiffness, obstacles }
+        let textured = bodies.iter().filter_map(|body| Some((body.name.clone(), body.texture.clone()?)));
+        Self { title: String::new(), view, stiffness, obstacles, textures: textured.collect() }
     }
 
     /// The stage of the scene that a run's report names; the default, and why, where it cannot be had.
@@ -88,6 +92,12 @@ impl Stage {
             }
         }
         (bare, Some(format!("the scene `{name}` {why}: shapes are not drawn")))
+    }
+
+    /// The texture of what has a name among the parts of a moment: of a body, or of the one that wears it.
+    pub(super) fn texture(&self, part: &str) -> Option<&Arc<Texture>> {
+        let is_of = |body: &str| part == body || part == crate::frames::worn_by(body);
+        self.textures.iter().find(|(body, _)| is_of(body)).map(|(_, texture)| texture)
     }
 
     /// The plane that is most level, if any is.

@@ -23,6 +23,7 @@ use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
 use super::split::{SPLIT, SplitSpec};
 use super::start::{START, StartSpec};
+use super::texture::{TEXTURE, TextureSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, NOWHERE, Need, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -222,7 +223,12 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
         Key::new("springs", Shape::Tables(&SPRING), "springs from points to where they start"),
         Key::new("skin", Shape::Table(&BODY_SKIN), "a skin that dresses it, see `skins`"),
-        Key::new("marks", Shape::Table(&MARKS), "its surface shows where it was pressed and burnt"),
+        Key::new("texture", Shape::Table(&TEXTURE), "colours of its surface that stick to the matter"),
+        Key::new(
+            "marks",
+            Shape::Table(&MARKS),
+            "its surface shows where it was pressed and burnt, and bleeds",
+        ),
     ],
 );
 
@@ -276,6 +282,7 @@ pub struct Body {
     pub springs: Vec<Spring>,
     /// What tools leave on its surface.
     pub marks: Option<MarksSpec>,
+    pub texture: Option<TextureSpec>,
     /// Masses and links in place of a mesh and its material.
     pub network: Option<Network>,
     pub site: Site,
@@ -496,6 +503,7 @@ impl Body {
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             marks: reader.table("marks").map(|table| MarksSpec::read(&table)),
+            texture: reader.table("texture").and_then(|table| TextureSpec::read(&table)),
             network: None,
             site: reader.site(),
         }

@@ -29,6 +29,7 @@ pub mod skin;
 pub mod sound;
 pub mod split;
 pub mod start;
+pub mod texture;
 pub mod units;
 pub mod view;
 pub mod world;

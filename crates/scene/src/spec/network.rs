@@ -470,6 +470,7 @@ impl Network {
             levels: None,
             octree: None,
             marks: None,
+            texture: None,
             network: Some(network),
             site: reader.site(),
         }

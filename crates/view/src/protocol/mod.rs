@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 pub use frame::{Frame, FrameBody, FrameSkin, HandShown, Holds};
 pub use samples::Samples;
-pub use shapes::{SurfaceShape, inside, network, surface, tool};
+pub use shapes::{SurfaceShape, inside, network, surface, texture, tool};
 pub use wish::Wish;
 
 use crate::hub::Outgoing;
@@ -38,6 +38,7 @@ pub enum Kind {
     Network = 4,
     Inside = 5,
     Tool = 6,
+    Texture = 7,
 }
 
 /// A document of a kind.

@@ -1,5 +1,6 @@
 //! Messages that describe once what frames move: surfaces, links and balls, the inside of bodies, tools.
 
+use souple_io::picture::{Colour, PATTERNS, Texture, TextureFigure};
 use souple_math::Vec3;
 use souple_mesh::Span;
 
@@ -48,6 +49,26 @@ pub fn network(scene: u32, index: u16, links: &[[u32; 2]], radii: &[f64]) -> Vec
     put_u32(&mut bytes, radii.len());
     bytes.extend_from_slice(bytemuck::cast_slice(links));
     radii.iter().for_each(|radius| put_f32(&mut bytes, *radius));
+    bytes
+}
+
+/// The texture of body `index`: a picture, from its upper row, or the number of its pattern, from one, with its two colours.
+pub fn texture(scene: u32, index: u16, texture: &Texture) -> Vec<u8> {
+    let mut bytes = header(Kind::Texture, index, scene);
+    let (figure, size, colours) = match &texture.figure {
+        TextureFigure::Picture(image) => (0, [image.width, image.height], [Colour::BLACK; 2]),
+        TextureFigure::Pattern(pattern, colours) => {
+            let number = PATTERNS.entries.iter().position(|entry| entry.build == *pattern);
+            (1 + number.unwrap_or(0), [0, 0], *colours)
+        }
+    };
+    put_u32(&mut bytes, figure);
+    put_f32(&mut bytes, texture.size);
+    size.into_iter().for_each(|side| put_u32(&mut bytes, side));
+    colours.iter().flat_map(|colour| colour.0).for_each(|part| put_f32(&mut bytes, part.into()));
+    if let TextureFigure::Picture(image) = &texture.figure {
+        bytes.extend(image.pixels.iter().flat_map(|[red, green, blue]| [*red, *green, *blue, 255]));
+    }
     bytes
 }
 

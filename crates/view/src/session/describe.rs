@@ -49,6 +49,10 @@ impl Stage {
         for (index, shape) in of_bodies.chain(of_obstacles).enumerate() {
             binary(protocol::surface(self.number(), index as u16, &shape));
         }
+        for (index, body) in self.session().bodies.iter().enumerate() {
+            let texture = body.texture.iter();
+            texture.for_each(|texture| binary(protocol::texture(self.number(), index as u16, texture)));
+        }
         self.tools().into_iter().for_each(&mut binary);
         tell(self.adjustables());
         tell(self.pins());

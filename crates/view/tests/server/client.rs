@@ -161,6 +161,8 @@ pub struct Page {
     pub insides: Vec<[u32; 2]>,
     /// When the cells of each go [s].
     pub dates: Vec<Vec<f64>>,
+    /// Body, figure, width and height of each message of a texture.
+    pub textures: Vec<[u32; 4]>,
     /// Messages of tools' shapes.
     pub tool_count: u32,
     /// Bytes of the last frame.
@@ -289,6 +291,7 @@ impl Page {
             spans: Vec::new(),
             insides: Vec::new(),
             dates: Vec::new(),
+            textures: Vec::new(),
             tool_count: 0,
             frame_bytes: 0,
         })
@@ -346,6 +349,11 @@ impl Page {
                         self.dates.push(dates(&bytes, &mut at, 1));
                     }
                     6 => self.tool_count += 1,
+                    7 => {
+                        let body = u16::from_le_bytes([bytes[2], bytes[3]]);
+                        self.textures.push([body.into(), number(8), number(16), number(20)]);
+                        assert_eq!(bytes.len() as u32, 48 + 4 * number(16) * number(20));
+                    }
                     _ => {}
                 }
                 let frame = Frame::parse(&bytes)?;

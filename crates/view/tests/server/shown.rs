@@ -282,6 +282,42 @@ fn surfaces_whiten_under_tools() {
     assert!(values.iter().filter(|value| **value == 0.0).count() > values.len() / 2, "{values:?}");
 }
 
+/// Blood comes along with how bodies look, and the texture of a body once, before its first frame.
+#[test]
+fn blood_and_textures_are_shown() {
+    let torn = r#"
+    [bodies.block.texture]
+    pattern = "spots"
+    size = "2 cm"
+    [bodies.block.marks]
+    whitening_pressure = "1 GPa"
+    [bodies.block.marks.bleeding]
+    pressure = 0
+    rate = "1 mm/s"
+    [shapes.ball]
+    shape = { name = "sphere", centre = [0.1, 0.11, 0.1], radius = 0.03 }
+    [[contacts]]
+    name = "ball"
+    body = "block"
+    shape = "ball"
+    "#;
+    let world = World::of(&format!("{BLOCK}{torn}"));
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    let fields = scene["fields"].as_array().unwrap();
+    let number = |name: &str| fields.iter().position(|field| field["name"] == name).unwrap();
+    assert_eq!(fields[number("tissue")]["over"], number("blood"));
+    assert!(fields[number("whitening")]["over"].is_null());
+    assert_eq!(fields[number("blood")]["is_here"], true);
+    page.wish(json!({"do": "colour", "field": "tissue"}));
+    let bleeds = |frame: &crate::client::Frame| {
+        frame.values.len() == 2 && frame.values[1].iter().any(|film| *film > 1e-5)
+    };
+    page.frame_where(bleeds);
+    // spots are the second pattern
+    assert_eq!(page.textures, [[0, 2, 0, 0]]);
+}
+
 /// Colours tell the cells of a surface apart, then those of the inside: by kind, by law, by the mesh at work.
 #[test]
 fn cells_are_told_apart() {

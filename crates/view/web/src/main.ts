@@ -192,6 +192,9 @@ class Page {
       case "network":
         if (message.scene === this.info?.scene) this.networks[message.index] = message;
         break;
+      case "texture":
+        if (message.scene === this.info?.scene) this.picture.setTexture(message);
+        break;
       case "inside":
         if (message.scene === this.info?.scene) this.picture.setInside(message);
         break;

@@ -239,6 +239,23 @@ export interface InsideShape {
   dates: Float64Array;
 }
 
+/** The texture of a body. */
+export interface TextureShape {
+  kind: "texture";
+  scene: number;
+  index: number;
+  /** 0: a picture; else the number of a pattern, from one. */
+  figure: number;
+  /** [m] */
+  size: number;
+  width: number;
+  height: number;
+  /** Two of three numbers in linear light, of a pattern. */
+  colours: Float32Array;
+  /** Four bytes each, from the upper row. */
+  pixels: Uint8Array;
+}
+
 export interface ToolShape {
   kind: "tool";
   scene: number;
@@ -301,7 +318,7 @@ export interface Samples {
   numbers: Float64Array;
 }
 
-export type Binary = Surface | Frame | Samples | NetworkShape | InsideShape | ToolShape;
+export type Binary = Surface | Frame | Samples | NetworkShape | InsideShape | TextureShape | ToolShape;
 
 /** Reads a binary message; null for one of a version or kind that this page does not know. */
 export function decode(buffer: ArrayBuffer): Binary | null {
@@ -339,6 +356,21 @@ export function decode(buffer: ArrayBuffer): Binary | null {
         tetrahedra: new Uint32Array(buffer, 16, 5 * tetrahedra),
         triangles: new Uint32Array(buffer, 16 + 20 * tetrahedra, 4 * triangles),
         dates: datesAt(view, 16 + 20 * tetrahedra + 16 * triangles, 1),
+      };
+    }
+    case 7: {
+      const width = view.getUint32(16, true);
+      const height = view.getUint32(20, true);
+      return {
+        kind: "texture",
+        scene,
+        index: count,
+        figure: view.getUint32(8, true),
+        size: view.getFloat32(12, true),
+        width,
+        height,
+        colours: new Float32Array(buffer, 24, 6),
+        pixels: new Uint8Array(buffer, 48, 4 * width * height),
       };
     }
     case 6: {

@@ -19,9 +19,9 @@ import {
   Vector3,
 } from "three";
 import type { Object3D } from "three";
-import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface } from "../protocol";
+import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface, TextureShape } from "../protocol";
 import { Axes } from "./axes";
-import { layBlood } from "./blood";
+import { Coat } from "./coat";
 import { Facets } from "./facets";
 import { Inside } from "./inside";
 import type { Paint } from "./inside";
@@ -72,6 +72,7 @@ export class Body {
   readonly normals: Float32Array;
   private readonly network: Network | null;
   private readonly axes: Axes;
+  private readonly coat: Coat;
   private inside: Inside | null = null;
   /** Made when cells are first coloured. */
   private facets: Facets | null = null;
@@ -84,7 +85,8 @@ export class Body {
   private style: Style = "smooth";
   private dark = false;
   private hasValues = false;
-  private hasFilm = false;
+  /** Attributes of the coat that are not zero everywhere. */
+  private readonly numbered = new Set<string>();
   private shine = OWN;
   /** Seen itself, whatever skin it wears. */
   private isBare = false;
@@ -118,7 +120,7 @@ export class Body {
     };
     const geometry = made(["position", "normal", "color"], this.creased.sources.length);
     geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
-    geometry.setAttribute("film", thicknesses(this.creased.sources.length));
+    layRest(geometry, this.creased, surface.points);
     const material = new MeshPhysicalMaterial({
       color: BODY_COLOURS[index % BODY_COLOURS.length]!,
       ...OWN,
@@ -126,7 +128,7 @@ export class Body {
       polygonOffsetFactor: 1,
       polygonOffsetUnits: 1,
     });
-    layBlood(material);
+    this.coat = new Coat(material);
     this.mesh = new Mesh(geometry, material);
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
@@ -202,6 +204,10 @@ export class Body {
     this.axes.setShown(shown);
   }
 
+  setTexture(shape: TextureShape): void {
+    this.coat.setTexture(shape);
+  }
+
   /** Colours by values, with blood over them where any lies; by its own colour for none. */
   colourBy(values: Float32Array | undefined, film: Float32Array | undefined, { of, range, map, isLook }: Colouring): void {
     const { material } = this.mesh;
@@ -213,7 +219,10 @@ export class Body {
       Object.assign(material, shine);
       material.needsUpdate = true;
     }
-    this.setFilm(film);
+    this.setNumbers("film", film);
+    const isTextured = this.coat.isTextured && (!values || isLook);
+    this.coat.setShown(isTextured);
+    this.setNumbers("look", isTextured ? values : undefined);
     this.setOfCells(of === "cells" && values !== undefined);
     const { sources } = this.creased;
     const count = this.surface.triangles.length / 3;
@@ -329,6 +338,7 @@ export class Body {
   dispose(): void {
     this.mesh.geometry.dispose();
     this.mesh.material.dispose();
+    this.coat.dispose();
     this.edges.geometry.dispose();
     this.edges.material.dispose();
     this.dropPins();
@@ -363,14 +373,17 @@ export class Body {
     this.setVisible();
   }
 
-  /** Thickness of the blood on points [m]; none. */
-  private setFilm(film: Float32Array | undefined): void {
-    const attribute = this.mesh.geometry.getAttribute("film");
+  /** A number of each point, for its coat; zeros for none. */
+  private setNumbers(name: "film" | "look", values: Float32Array | undefined): void {
+    const had = this.numbered.has(name);
+    if (!values && !had) return;
+    const attribute = this.mesh.geometry.getAttribute(name);
     const numbers = attribute.array as Float32Array;
-    if (film) this.creased.sources.forEach((point, own) => (numbers[own] = film[point] ?? 0));
-    else if (this.hasFilm) numbers.fill(0);
-    if (film || this.hasFilm) attribute.needsUpdate = true;
-    this.hasFilm = film !== undefined;
+    if (values) this.creased.sources.forEach((point, own) => (numbers[own] = values[point] ?? 0));
+    else numbers.fill(0);
+    attribute.needsUpdate = true;
+    if (values) this.numbered.add(name);
+    else this.numbered.delete(name);
   }
 
   /** Draws what is on the surface at a time; a world begun anew is closed again. */
@@ -386,8 +399,8 @@ export class Body {
     // buffers of another length are others
     geometry.dispose();
     for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, moving(new Float32Array(3 * this.creased.sources.length)));
-    geometry.setAttribute("film", thicknesses(this.creased.sources.length));
-    this.hasFilm = false;
+    layRest(geometry, this.creased, points);
+    this.numbered.clear();
     geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
     this.edges.geometry.setIndex(new BufferAttribute(this.edgesAt(time), 1));
     if (this.facets) {
@@ -447,9 +460,18 @@ function moving(numbers: Float32Array): BufferAttribute {
   return new BufferAttribute(numbers, 3).setUsage(DynamicDrawUsage);
 }
 
-/** Of a film on points that has none yet. */
-function thicknesses(points: number): BufferAttribute {
-  return new BufferAttribute(new Float32Array(points), 1).setUsage(DynamicDrawUsage);
+/** What a coat needs of the points drawn: where they are at rest, with normals there, and the numbers it is told, none yet. */
+function layRest(geometry: BufferGeometry, { sources, triangles }: Creased, points: Float32Array): void {
+  for (const name of ["film", "look"]) {
+    const numbers = new BufferAttribute(new Float32Array(sources.length), 1);
+    geometry.setAttribute(name, numbers.setUsage(DynamicDrawUsage));
+  }
+  const rest = new Float32Array(3 * sources.length);
+  spread(points, sources, rest);
+  const normals = new Float32Array(rest.length);
+  smoothNormals(rest, triangles, normals);
+  geometry.setAttribute("rest", new BufferAttribute(rest, 3));
+  geometry.setAttribute("restNormal", new BufferAttribute(normals, 3));
 }
 
 /** The numbers of the things, of so many, that are there at a time; all where they have no spans. */

@@ -16,7 +16,7 @@ import {
 } from "three";
 import type { BufferGeometry, Object3D, Texture } from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
-import type { ColourMap, FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
+import type { ColourMap, FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, TextureShape, ToolShape } from "../protocol";
 import type { Weight } from "../ui/notes";
 import { Arrows } from "./arrows";
 import { Body } from "./body";
@@ -303,6 +303,11 @@ export class Picture {
     }
     const colouring = { of: this.of, range: meanings.range, map: this.colours, isLook: this.isLook };
     bodies.forEach(({ fields }, index) => this.bodies[index]?.colourBy(values[index], fields.get(this.over), colouring));
+  }
+
+  setTexture(shape: TextureShape): void {
+    this.isStale = true;
+    this.bodies[shape.index]?.setTexture(shape);
   }
 
   /** Colours by a field with this number; `map` is for quantities, classes and looks have colours of their own. */
