@@ -144,6 +144,17 @@ pub struct ContactPoint<'a> {
     pub friction: Vec3,
 }
 
+/// How far something that multipliers keep was off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unmet {
+    /// In words: what, and of what it is a share.
+    pub what: &'static str,
+    pub off: f64,
+    pub wanted: f64,
+    /// Where it is off most.
+    pub row: usize,
+}
+
 /// A link between two rows as it stands, for pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkShown {
@@ -278,15 +289,22 @@ pub trait Force: Send + Sync {
         false
     }
 
+    /// Where what it is to keep is farther off than it may be, moves its multipliers on, in its memory, by what its penalty bears where the
+    /// rows stand, and says how far off it was; `None` where it is near enough, and nothing of its memory changed. For steppers that
+    /// [augment](crate::steppers::Stepper::augments), which solve on then.
+    fn augment(&self, _positions: &[Vec3], _memory: &mut [f64]) -> Option<Unmet> {
+        None
+    }
+
     /// Whether its [`Force::end_step`] does anything.
     fn ends_steps(&self) -> bool {
         false
     }
 
-    /// What of its memory changes between one step and the next, at the rows that the step came to, whatever the stepper:
-    /// a change of what energy is stored there is a jump at that very state, which can be booked exactly. Returns whether its
+    /// What of its memory changes between one step and the next, at the rows that a step of `timestep` [s] came to, whatever the
+    /// stepper: a change of what energy is stored there is a jump at that very state, which can be booked exactly. Returns whether its
     /// force has jumped.
-    fn end_step(&self, _positions: &[Vec3], _memory: &mut [f64]) -> bool {
+    fn end_step(&self, _positions: &[Vec3], _timestep: f64, _memory: &mut [f64]) -> bool {
         false
     }
 

@@ -43,7 +43,7 @@ pub use detection::{Detected, Detection};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
     Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,
-    LinkState, ParameterError, Scratch, TangentWeights,
+    LinkState, ParameterError, Scratch, TangentWeights, Unmet,
 };
 pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;

@@ -6,7 +6,7 @@ use souple_math::{Mat3, Vec3, logarithm, orthonormalised};
 
 use crate::binding::Bound;
 use crate::constraint::Constraint;
-use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
+use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights, Unmet};
 use crate::holding::HeldPoints;
 use crate::implicit::ImplicitBuffers;
 use crate::interruption::Interruption;
@@ -85,6 +85,8 @@ pub struct SystemWorkspace {
 struct Mark {
     q: Vec<Vec3>,
     pairs: Vec<Pair>,
+    /// Multipliers are moved on between solves.
+    memory: Vec<f64>,
     searched: Vec<Vec3>,
 }
 
@@ -144,6 +146,7 @@ impl SystemWorkspace {
     pub(crate) fn mark(&mut self, state: &SystemState) {
         self.mark.q.clone_from(&state.q);
         self.mark.pairs.clone_from(&state.pairs);
+        self.mark.memory.clone_from(&state.memory);
         self.mark.searched.clone_from(&self.searched);
     }
 
@@ -151,6 +154,7 @@ impl SystemWorkspace {
     pub(crate) fn return_to_mark(&mut self, state: &mut SystemState) {
         state.q.clone_from(&self.mark.q);
         state.pairs.clone_from(&self.mark.pairs);
+        state.memory.clone_from(&self.mark.memory);
         self.searched.clone_from(&self.mark.searched);
     }
 
@@ -603,6 +607,20 @@ impl System {
         broke
     }
 
+    /// Lets forces move their multipliers on at the placed rows; what is off most of what it may be, and the number of its force.
+    pub fn augment(&self, rows: &Rows, state: &mut SystemState) -> Option<(usize, Unmet)> {
+        let mut worst: Option<(usize, Unmet)> = None;
+        for (index, force) in self.forces.iter().enumerate() {
+            let memory = &mut state.memory[self.memory_range(index)];
+            let Some(unmet) = force.augment(&rows.positions, memory) else { continue };
+            let share = |unmet: &Unmet| unmet.off / unmet.wanted;
+            if worst.as_ref().is_none_or(|(_, known)| share(known) < share(&unmet)) {
+                worst = Some((index, unmet));
+            }
+        }
+        worst
+    }
+
     /// What of a force cannot be at the placed rows.
     pub fn fault(&self, rows: &Rows, state: &SystemState, around: &Surroundings) -> Option<StepError> {
         self.forces.iter().enumerate().find_map(|(index, force)| {
@@ -617,10 +635,10 @@ impl System {
     }
 
     /// Lets forces change their memory at the placed rows, those that a step came to.
-    pub fn end_step(&self, rows: &Rows, state: &mut SystemState) {
+    pub fn end_step(&self, rows: &Rows, timestep: f64, state: &mut SystemState) {
         let mut jumped = false;
         for (index, force) in self.forces.iter().enumerate().filter(|(_, force)| force.ends_steps()) {
-            jumped |= force.end_step(&rows.positions, &mut state.memory[self.memory_range(index)]);
+            jumped |= force.end_step(&rows.positions, timestep, &mut state.memory[self.memory_range(index)]);
         }
         if jumped {
             self.stepper.forget_forces(state);

@@ -235,7 +235,7 @@ impl Steps<'_> {
                 if !reads_rows {
                     system.place_rows(&state.q, &state.v, time + timestep, &mut ws.rows);
                 }
-                system.end_step(&ws.rows, state);
+                system.end_step(&ws.rows, *timestep, state);
             }
         }
         Ok(report)

@@ -75,6 +75,15 @@ pub fn read_mesh(path: &Path) -> Result<(Mesh, Vec<String>), IoError> {
     Ok((dataset.mesh, dataset.notes))
 }
 
+/// Like [`read_mesh`], of a file in one part whose content is at hand; its path says which format it is of.
+///
+/// # Errors
+/// No format knows it, or it is faulty.
+pub fn read_mesh_content(path: &Path, bytes: &[u8]) -> Result<(Mesh, Vec<String>), IoError> {
+    let dataset = read_content(path, bytes)?;
+    Ok((dataset.mesh, dataset.notes))
+}
+
 /// The files that a mesh is read from: that of the path, then those that stand beside it where a format has several.
 pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
     let parts = by_extension(path).map_or(&[][..], |entry| entry.build.parts);

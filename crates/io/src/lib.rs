@@ -34,8 +34,8 @@ pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{
     FORMATS, Format, Read, WriteError, WriteInto, files_of_mesh, losses, read_dataset, read_dataset_bytes,
-    read_mesh, read_mesh_bytes, writable_format, write_and_read_back, write_dataset, write_dataset_as,
-    write_mesh,
+    read_mesh, read_mesh_bytes, read_mesh_content, writable_format, write_and_read_back, write_dataset,
+    write_dataset_as, write_mesh,
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
 pub use particles::{ParticleRow, read_particle_bytes, read_particles};

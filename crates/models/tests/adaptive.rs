@@ -156,7 +156,7 @@ fn materials_adapt_each_to_its_own() {
             }
             // what a switch of a cell takes is the difference of its own two laws
             let before = answers(&force, &x, &memory).0;
-            force.end_step(&x, &mut memory);
+            force.end_step(&x, 0.01, &mut memory);
             let after = answers(&force, &x, &memory).0;
             assert!((before - after - memory[count]).abs() <= 1e-12 * before, "{element}");
         }
@@ -216,7 +216,7 @@ fn switches_follow_criteria_and_account_for_energy() {
     };
     let before = total(&memory, &mut scratch);
     let mut next = memory.clone();
-    force.end_step(&x, &mut next);
+    force.end_step(&x, 0.01, &mut next);
     memory.clone_from(&next);
     let after = total(&memory, &mut scratch);
     assert!((before - after).abs() <= 1e-12 * before, "{before} {after}");
@@ -233,9 +233,9 @@ fn switches_follow_criteria_and_account_for_energy() {
     // back to a strain between half the threshold and the threshold: nothing returns; at rest all do
     let switched = memory[..count].iter().sum::<f64>();
     let held: Vec<Vec3> = mesh.points.iter().map(|p| *p + Vec3::new(0.03 * p.x, 0.0, 0.0)).collect();
-    force.end_step(&held, &mut memory);
+    force.end_step(&held, 0.01, &mut memory);
     assert_eq!(memory[..count].iter().sum::<f64>(), switched);
-    force.end_step(&mesh.points, &mut memory);
+    force.end_step(&mesh.points, 0.01, &mut memory);
     assert_eq!(memory[..count].iter().sum::<f64>(), 0.0);
 }
 
@@ -254,7 +254,7 @@ fn lower_thresholds_switch_more() {
         let switched = |threshold: f64| {
             let force = adaptive(&mesh, &[(criterion, threshold * unit)], 0.0);
             let mut memory = vec![0.0; force.memory_len()];
-            force.end_step(&x, &mut memory);
+            force.end_step(&x, 0.01, &mut memory);
             memory[..mesh.cell_count()].iter().sum::<f64>()
         };
         let counts = [1e-9, 0.015, 0.03, 0.06, 10.0].map(switched);
@@ -293,7 +293,7 @@ fn surface_elements_switch_by_every_criterion() {
                 energy.stored + energy.dissipated
             };
             let before = total(&memory);
-            force.end_step(&x, &mut memory);
+            force.end_step(&x, 0.01, &mut memory);
             assert!((total(&memory) - before).abs() < 1e-12 * before, "{name}");
             for (cell, excess) in of_unit.iter().enumerate() {
                 // cells of one shape may lie on the threshold together
@@ -315,7 +315,7 @@ fn inverted_plane_elements_switch() {
         let mirrored: Vec<Vec3> = mesh.points.iter().map(|p| Vec3::new(-p.x, p.y, p.z)).collect();
         let v = vec![Vec3::ZERO; mesh.points.len()];
         let excess = force.adapted(0, &at(&mirrored, &v, &memory)).unwrap().excess;
-        force.end_step(&mirrored, &mut memory);
+        force.end_step(&mirrored, 0.01, &mut memory);
         let switched = memory[..mesh.cell_count()].iter().filter(|law| **law != 0.0).count();
         if matches!(section, Section::Membrane { .. }) {
             assert!(excess < 1e-12 && switched == 0, "{section:?}");

@@ -9,6 +9,7 @@ mod emitted_code;
 mod formulations;
 mod frames;
 mod implicit;
+mod incompressible;
 mod inelastic;
 mod kept_laws;
 mod materials;

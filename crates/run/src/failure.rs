@@ -74,7 +74,8 @@ impl Failure {
             StepError::ForceNotFinite { row, .. }
             | StepError::SlopeNotFinite { row, .. }
             | StepError::Fault { row, .. }
-            | StepError::Unkept { row, .. } => Some(*row),
+            | StepError::Unkept { row, .. }
+            | StepError::Unmet { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".v") => {
                 row_of(system, field.index)
@@ -89,7 +90,8 @@ impl Failure {
             StepError::ForceNotFinite { force, .. }
             | StepError::EnergyNotFinite { force, .. }
             | StepError::SlopeNotFinite { force, .. }
-            | StepError::Fault { force, .. } => Some(force.clone()),
+            | StepError::Fault { force, .. }
+            | StepError::Unmet { force, .. } => Some(force.clone()),
             _ => None,
         };
         let spot = found.map(|(body, (part, row))| {

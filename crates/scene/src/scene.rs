@@ -599,7 +599,7 @@ pub fn read_text(name: &str, text: &str, folder: &Path, overrides: &[String]) ->
     read(Library::default(), overrides, |includer| Some(includer.read_text(source)), |_| ())
 }
 
-/// The same of a text whose tables of numbers, such as plans, are at hand too: names of files, as the text has them, with their texts.
+/// The same of a text whose files, such as plans and meshes that are texts, are at hand too: names of files, as the text has them, with their texts.
 ///
 /// # Errors
 /// Everything that is wrong with it.

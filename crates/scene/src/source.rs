@@ -100,6 +100,13 @@ impl Sources {
         Ok(place)
     }
 
+    /// The path and the text of a file that the text of `source` names, where the library has it; its fingerprint is kept.
+    pub(crate) fn text_at_hand(&self, source: usize, file: &str) -> Option<(PathBuf, String)> {
+        let path = self.texts[source].folder.join(file);
+        self.text_in_library(&path)?;
+        Some((path, self.read(source, file).ok()?))
+    }
+
     /// The text of a file that the text of `source` names, from the library where it has it, and keeps its fingerprint.
     ///
     /// # Errors

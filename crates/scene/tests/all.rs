@@ -10,6 +10,7 @@ mod files;
 mod frames;
 mod hanging;
 mod heat;
+mod incompressible;
 mod inelastic;
 mod liver;
 mod marks;

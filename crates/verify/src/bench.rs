@@ -309,6 +309,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| laws::law_text("law_text_scalar", laws::Writing::Scalars, 2.5, effort),
     },
     Bench {
+        name: "inelastic",
+        what: "steps of a solid whose rest shape may yield, over those of the elastic solid [x elastic]",
+        run: |effort| laws::inelastic("inelastic", effort),
+    },
+    Bench {
         name: "law_ready",
         what: "from text to a program, for every law that ships [ms], and the same from the file where it was kept before",
         run: laws::law_ready,

@@ -28,6 +28,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("collateral", include_str!("../../../scenes/collateral/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
     ("commanded_carts", include_str!("../../../scenes/commanded_carts/scene.toml")),
+    ("cooks_membrane", include_str!("../../../scenes/cooks_membrane/scene.toml")),
     ("crane", include_str!("../../../scenes/crane/scene.toml")),
     ("crooked_patch", include_str!("../../../scenes/crooked_patch/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
@@ -67,6 +68,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("hung_block", include_str!("../../../scenes/hung_block/scene.toml")),
     ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
+    ("incompressible_ball", include_str!("../../../scenes/incompressible_ball/scene.toml")),
+    ("incompressible_bar", include_str!("../../../scenes/incompressible_bar/scene.toml")),
     ("joined_halves", include_str!("../../../scenes/joined_halves/scene.toml")),
     ("jointed_kernel", include_str!("../../../scenes/jointed_kernel/scene.toml")),
     ("kept_inside", include_str!("../../../scenes/kept_inside/scene.toml")),
@@ -162,6 +165,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("sphere_under_tension", include_str!("../../../scenes/sphere_under_tension/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
+    ("squashed_clay", include_str!("../../../scenes/squashed_clay/scene.toml")),
+    ("squashed_rubber", include_str!("../../../scenes/squashed_rubber/scene.toml")),
     ("steered_cart", include_str!("../../../scenes/steered_cart/scene.toml")),
     ("split_block", include_str!("../../../scenes/split_block/scene.toml")),
     ("strangled_clay", include_str!("../../../scenes/strangled_clay/scene.toml")),
@@ -193,8 +198,10 @@ pub const SCENES: &[(&str, &str)] = &[
     ("weight_on_string", include_str!("../../../scenes/weight_on_string/scene.toml")),
 ];
 
-/// `(scene, file, text)` of the plans that scenes name.
-const PLANS: &[(&str, &str, &str)] = &[
+/// `(scene, file, text)` of the plans and meshes that scenes name.
+const FILES: &[(&str, &str, &str)] = &[
+    ("cooks_membrane", "cook_hex8.msh", include_str!("../../../scenes/cooks_membrane/cook_hex8.msh")),
+    ("cooks_membrane", "cook_tet4.msh", include_str!("../../../scenes/cooks_membrane/cook_tet4.msh")),
     ("crane", "motion.plan.csv", include_str!("../../../scenes/crane/motion.plan.csv")),
     ("planned_cart", "motion.plan.csv", include_str!("../../../scenes/planned_cart/motion.plan.csv")),
     ("regulated_cart", "motion.plan.csv", include_str!("../../../scenes/regulated_cart/motion.plan.csv")),
@@ -203,7 +210,7 @@ const PLANS: &[(&str, &str, &str)] = &[
 
 /// Names and texts of the files that a scene names.
 pub fn files(name: &str) -> Vec<(&'static str, &'static str)> {
-    PLANS.iter().filter(|(scene, ..)| *scene == name).map(|(_, file, text)| (*file, *text)).collect()
+    FILES.iter().filter(|(scene, ..)| *scene == name).map(|(_, file, text)| (*file, *text)).collect()
 }
 
 /// The text of a scene.

@@ -44,6 +44,10 @@ impl Stepper for BackwardEuler {
         Stability::Unconditional
     }
 
+    fn augments(&self) -> bool {
+        self.newton.is_full()
+    }
+
     fn solver_settings(&self) -> SolverSettings {
         self.solver.clone()
     }

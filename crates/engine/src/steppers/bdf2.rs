@@ -54,6 +54,10 @@ impl Stepper for Bdf2 {
         Stability::Unconditional
     }
 
+    fn augments(&self) -> bool {
+        self.newton.is_full()
+    }
+
     fn solver_settings(&self) -> SolverSettings {
         self.solver.clone()
     }

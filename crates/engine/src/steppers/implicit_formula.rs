@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
+use crate::force::Unmet;
 use crate::implicit::{ImplicitBuffers, ImplicitStep, LedVelocity, Lent, NewtonSettings, Rates};
 use crate::kept::Summed;
 use crate::state::SystemState;
@@ -22,6 +23,12 @@ pub enum NewtonMode {
     /// To the tolerance, with line search. Under backward Euler, where the potential is convex from the start of a step to
     /// its end, `E' ≤ E - ½ M |v' - v|²` to the tolerance: energy does not grow.
     Full(NewtonSettings),
+}
+
+impl NewtonMode {
+    pub(super) fn is_full(self) -> bool {
+        matches!(self, Self::Full(_))
+    }
 }
 
 pub(super) const NEWTON: Parameter = Parameter::choice(
@@ -54,6 +61,33 @@ pub(super) fn newton_settings(values: &Values) -> NewtonSettings {
     }
 }
 
+/// Solves between which multipliers are moved on before a step is given up.
+const MOST_AUGMENTATIONS: u32 = 100;
+
+/// Equilibrium of all forces, with the multipliers that keep what is to be kept as near as is wanted: solved as [`settle`] does, and
+/// again each time that they were moved on (Bertsekas 1982, §2.2; Simo & Taylor 1991).
+pub(super) fn settle_constrained(
+    implicit: &ImplicitStep,
+    settings: NewtonSettings,
+    next: &mut SystemState,
+    ws: &mut SystemWorkspace,
+    buffers: &mut ImplicitBuffers,
+) -> Result<StepReport, StepError> {
+    let system = implicit.system;
+    let mut report = StepReport::default();
+    let mut solves = 0;
+    loop {
+        report.merge(&settle(implicit, settings, next, ws, buffers)?);
+        solves += 1;
+        let Some((force, unmet)) = system.augment(&ws.rows, next) else { return Ok(report) };
+        if solves == MOST_AUGMENTATIONS || !unmet.off.is_finite() {
+            let Unmet { what, off, wanted, row } = unmet;
+            let (force, time) = (system.forces[force].name().to_owned(), implicit.end);
+            return Err(StepError::Unmet { force, what, off, wanted, solves, row, time });
+        }
+    }
+}
+
 /// Searches of pairs within one solve before it is given up.
 const MAX_SEARCHES: u32 = 16;
 
@@ -62,7 +96,7 @@ const MAX_SEARCHES: u32 = 16;
 /// While it iterates, pairs stay as they are: forces are pure and the merit is one function. Where it ends, rows may have
 /// come farther than the search of pairs saw. Pairs are then found again there, those still there with their memory, and
 /// the same equation is solved on from there. All of it follows from the State at the start of the step.
-pub(super) fn settle(
+fn settle(
     implicit: &ImplicitStep,
     settings: NewtonSettings,
     next: &mut SystemState,
@@ -170,7 +204,7 @@ impl Step<'_> {
                 lent.give_back(next);
                 solved
             }
-            NewtonMode::Full(settings) => settle(&implicit, settings, next, ws, buffers),
+            NewtonMode::Full(settings) => settle_constrained(&implicit, settings, next, ws, buffers),
         }?;
         // the very velocity that the equation was solved with
         let ImplicitBuffers { q_start, velocity_offset, .. } = buffers;

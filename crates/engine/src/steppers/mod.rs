@@ -141,6 +141,10 @@ pub enum StepError {
         "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: it is held elsewhere, contradicted by others, or turns too far in one step: take a smaller one"
     )]
     Unkept { force: String, relation: String, off: f64, row: usize, time: f64 },
+    #[error(
+        "`{force}`: {what} is off by {off:.1e} after {solves} solves (time {time} s), {wanted:.1e} is wanted: raise the penalty, or what it may be off by; where all of it is held or led there is nothing that could give"
+    )]
+    Unmet { force: String, what: &'static str, off: f64, wanted: f64, solves: u32, row: usize, time: f64 },
     #[error("{0}")]
     Field(String),
     /// It was broken off from outside ([`crate::Interruption`]).
@@ -153,6 +157,11 @@ pub enum StepError {
 }
 
 impl StepError {
+    /// Whether a shorter way may not meet it: not where nothing was asked of the way, or where there is no state that keeps what is to be kept.
+    fn may_pass(&self) -> bool {
+        !matches!(self, Self::Interrupted | Self::Unmet { .. })
+    }
+
     /// What the innermost attempt failed of.
     pub fn cause(&self) -> &Self {
         match self {
@@ -233,6 +242,11 @@ pub trait Stepper: Send + Sync {
 
     /// Whether it solves for the forces of relations between points, see [`crate::Binding`].
     fn binds_points(&self, _system: &System) -> bool {
+        false
+    }
+
+    /// Whether its steps keep what forces keep by multipliers, see [`crate::Force::augment`].
+    fn augments(&self) -> bool {
         false
     }
 

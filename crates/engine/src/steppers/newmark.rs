@@ -120,6 +120,10 @@ impl Stepper for Newmark {
         Stability::Unconditional
     }
 
+    fn augments(&self) -> bool {
+        self.newton.is_full()
+    }
+
     fn solver_settings(&self) -> SolverSettings {
         self.solver.clone()
     }

@@ -37,7 +37,7 @@ pub(super) fn in_parts(
                 report.merge(&led);
                 reached = to;
             }
-            Err(error) if halvings == most || error == StepError::Interrupted => {
+            Err(error) if halvings == most || !error.may_pass() => {
                 return Err(Stuck { reached, part, error });
             }
             Err(_) => {

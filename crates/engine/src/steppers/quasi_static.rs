@@ -5,7 +5,7 @@ use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
+use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle_constrained};
 use super::parts::{Stuck, in_parts};
 use super::static_equilibrium::conserves;
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
@@ -63,7 +63,7 @@ impl QuasiStatic {
             has_potential: conserves(system),
         };
         implicit.begin(next, buffers);
-        let report = settle(&implicit, self.newton, next, ws, buffers)?;
+        let report = settle_constrained(&implicit, self.newton, next, ws, buffers)?;
         let ImplicitBuffers { q_start, velocity_offset, .. } = buffers;
         implicit.velocity_into(&next.q, q_start, velocity_offset, &mut next.v);
         step.finish(next, ws);
@@ -78,6 +78,10 @@ impl Stepper for QuasiStatic {
 
     fn stability(&self) -> Stability {
         Stability::Unconditional
+    }
+
+    fn augments(&self) -> bool {
+        true
     }
 
     fn has_inertia(&self) -> bool {

@@ -1,4 +1,4 @@
-//! Statics: `f(q) = 0`, reached over load steps; attachments that tear there are gone before the step ends.
+//! Statics: `f(q) = 0`, reached over load steps; what tears there is gone before the step ends.
 
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
@@ -9,7 +9,7 @@ use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
+use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle_constrained};
 use super::parts::in_parts;
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
@@ -73,7 +73,7 @@ impl StaticEquilibrium {
     ) -> Result<StepReport, StepError> {
         let implicit =
             ImplicitStep { system, around, end, rates: Rates::STATIC, has_potential: conserves(system) };
-        settle(&implicit, self.newton, next, ws, buffers)
+        settle_constrained(&implicit, self.newton, next, ws, buffers)
     }
 }
 
@@ -114,6 +114,10 @@ impl Stepper for StaticEquilibrium {
 
     fn stability(&self) -> Stability {
         Stability::Unconditional
+    }
+
+    fn augments(&self) -> bool {
+        true
     }
 
     fn has_inertia(&self) -> bool {

@@ -145,8 +145,8 @@ impl Force for DifferencedForce {
         self.inner.ends_steps()
     }
 
-    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) -> bool {
-        self.inner.end_step(positions, memory)
+    fn end_step(&self, positions: &[Vec3], timestep: f64, memory: &mut [f64]) -> bool {
+        self.inner.end_step(positions, timestep, memory)
     }
 
     fn editable(&self) -> Vec<Editable> {

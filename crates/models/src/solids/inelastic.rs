@@ -3,7 +3,7 @@
 //! The deformation is an elastic one of a reference that has changed, `F = F_e F_p`, at each sample of each cell (Terzopoulos & Fleischer
 //! 1988, as solids of large strain have it). The law of the body, whichever it is, sees `F_e = F F_p⁻¹`: the cell is one
 //! whose rest gradients are `F_p⁻ᵀ ∇N`. The reference keeps its volume. `F_p` is memory: within a step the force has an energy and exact
-//! derivatives, and once in each step what has been strained goes over into the reference: at its end, under explicit steppers at its start.
+//! derivatives, and once in each step, where it ends, what has been strained goes over into the reference.
 //!
 //! With `C_e = F_eᵀ F_e = Σ λ_i² v_i ⊗ v_i` and the logarithmic strain `e = dev Σ ln λ_i v_i ⊗ v_i`, a share `η` of it goes over:
 //!
@@ -16,21 +16,27 @@
 //! - Fracture: a cell at a sample of which the greatest principal stress or stretch is beyond its limit has no stiffness from then on. Limits
 //!   are scattered from cell to cell by a seed.
 //!
+//! Statics know no order in which cells tear: where a step finds equilibrium all that bear too much are torn at once, judged with what of
+//! their strain goes over, and it is sought again for what is left until no more do.
+//!
 //! The equivalent stress of an isotropic law is no more than the threshold where the reference moves on, and may be above it elsewhere by what a step
 //! strains: take steps that strain little.
 //!
 //! Source: Terzopoulos & Fleischer 1988, §5; Simo & Hughes 1998, §9.3 (logarithmic strain, return to the threshold).
 
 use std::any::Any;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use souple_engine::state::Pair;
-use souple_engine::tangent::add_block;
-use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{
+    CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
+};
 use souple_math::{Mat3, Vec3, eigen_symmetric};
 use souple_mesh::MAX_NODES;
 use souple_solve::BlockMatrix;
 
-use super::{FlatCell, SolidDescription};
+use super::cellwise::Cellwise;
+use super::{FlatCell, SolidDescription, parallel};
 use crate::materials::{Material, Oriented, cauchy_stress, von_mises};
 
 /// How the reference of a body changes.
@@ -82,7 +88,6 @@ struct Sample {
 }
 
 struct Cell {
-    rows: Vec<u32>,
     samples: Vec<Sample>,
     /// Where its samples begin in memory.
     memory: usize,
@@ -90,38 +95,33 @@ struct Cell {
     strength: f64,
 }
 
-/// Numbers of memory before those of cells: what has been given off [J].
-const HEAT: usize = 0;
-const FIRST: usize = 1;
-/// Of a cell, before its samples: 1 where it is torn.
-const TORN: usize = 1;
-/// Of a sample: `F_p` by columns, then `ε̄`.
+/// Numbers of memory of a cell before those of its samples: 1 where it is torn, and what it has given off [J].
+const OF_CELL: usize = 2;
+const TORN: usize = 0;
+const HEAT: usize = 1;
+/// Of a sample: `F_p⁻¹` by columns, then `ε̄`.
 const SAMPLE: usize = 10;
 
 /// What a sample remembers.
 struct Reference {
-    F: Mat3,
+    /// `F_p⁻¹`; its volume is that of rest.
+    inverse: Mat3,
     yielded: f64,
 }
 
 impl Reference {
-    const REST: Self = Self { F: Mat3::IDENTITY, yielded: 0.0 };
+    const REST: Self = Self { inverse: Mat3::IDENTITY, yielded: 0.0 };
 
     fn read(memory: &[f64]) -> Self {
         let column = |j: usize| Vec3::new(memory[3 * j], memory[3 * j + 1], memory[3 * j + 2]);
-        Self { F: Mat3::from_columns(column(0), column(1), column(2)), yielded: memory[9] }
+        Self { inverse: Mat3::from_columns(column(0), column(1), column(2)), yielded: memory[9] }
     }
 
     fn write(&self, memory: &mut [f64]) {
-        for (slots, column) in memory.chunks_exact_mut(3).zip(self.F.columns) {
+        for (slots, column) in memory.chunks_exact_mut(3).zip(self.inverse.columns) {
             slots.copy_from_slice(&column.to_array());
         }
         memory[9] = self.yielded;
-    }
-
-    /// `F_p⁻¹`; its volume is that of rest.
-    fn inverse(&self) -> Mat3 {
-        self.F.try_inverse().unwrap_or(Mat3::IDENTITY)
     }
 }
 
@@ -154,16 +154,28 @@ impl Strain {
     }
 }
 
-/// Elastic force of a body whose reference changes: of any law and any element of volume, sample by sample.
+/// Elastic force of a body whose reference changes: of any objective law and any element of volume, sample by sample.
 pub struct InelasticForce {
     name: String,
     cells: Vec<Cell>,
+    nodes: Cellwise,
     materials: Vec<Material>,
     material_of_cell: Vec<u16>,
     axes: Vec<Mat3>,
     rules: Inelasticity,
     memory_len: usize,
     is_internal: bool,
+}
+
+/// Parts of sums over cells.
+#[derive(Default)]
+struct InelasticScratch {
+    parts: Vec<Vec3>,
+    blocks: Vec<Mat3>,
+}
+
+fn of(scratch: &mut Scratch) -> &mut InelasticScratch {
+    scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
 }
 
 impl InelasticForce {
@@ -173,7 +185,7 @@ impl InelasticForce {
         let SolidDescription { name, mesh, first_row, materials, material_of_cell, axes, quadrature, .. } =
             description;
         let mut cells = Vec::with_capacity(mesh.cell_count());
-        let mut memory = FIRST;
+        let mut memory = 0;
         let mut buffer = [Vec3::ZERO; MAX_NODES];
         for (number, cell) in mesh.cells().enumerate() {
             let corners = mesh.positions_into(cell.nodes, &mut buffer);
@@ -189,14 +201,14 @@ impl InelasticForce {
                 samples.push(Sample { volume: determinant * point.weight, gradients });
             }
             let strength = rules.fracture.map_or(1.0, |fracture| fracture.strength(number as u64));
-            let rows = cell.nodes.iter().map(|node| *first_row as u32 + node).collect();
             let count = samples.len();
-            cells.push(Cell { rows, samples, memory, strength });
-            memory += TORN + SAMPLE * count;
+            cells.push(Cell { samples, memory, strength });
+            memory += OF_CELL + SAMPLE * count;
         }
         Ok(Self {
             name: name.clone(),
             cells,
+            nodes: Cellwise::new(mesh, *first_row),
             is_internal: materials.iter().all(|material| material.law.is_objective()),
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
@@ -210,53 +222,136 @@ impl InelasticForce {
         self.materials[usize::from(self.material_of_cell[cell])].along(self.axes.get(cell))
     }
 
-    /// Calls `visit` for every sample of cells that are whole, with the gradients of its nodes in the changed reference, of which there
-    /// are as many as rows, and `F_e`.
-    fn for_samples(&self, at: &Configuration, mut visit: impl FnMut(usize, &Cell, f64, &[Vec3], &Mat3)) {
-        let mut gradients = [Vec3::ZERO; MAX_NODES];
-        for (number, cell) in self.cells.iter().enumerate() {
-            if cell.is_torn(at.memory) {
-                continue;
-            }
-            for (index, sample) in cell.samples.iter().enumerate() {
-                let inverse = cell.reference(index, at.memory).inverse();
-                for (changed, gradient) in gradients.iter_mut().zip(&sample.gradients) {
-                    *changed = inverse.transpose_apply(*gradient);
-                }
-                let gradients = &gradients[..cell.rows.len()];
-                let F = cell.gradient(at.positions, gradients);
-                visit(number, cell, sample.volume, gradients, &F);
-            }
-        }
-    }
-}
-
-impl Cell {
-    fn is_torn(&self, memory: &[f64]) -> bool {
-        memory[self.memory] > 0.0
+    /// The memory of a cell.
+    fn memory_of<'a>(&self, cell: usize, memory: &'a [f64]) -> &'a [f64] {
+        let cell = &self.cells[cell];
+        &memory[cell.memory..][..cell.memory_len()]
     }
 
-    fn reference(&self, sample: usize, memory: &[f64]) -> Reference {
-        Reference::read(&memory[self.memory + TORN + SAMPLE * sample..][..SAMPLE])
-    }
-
-    /// `Σ x ⊗ gradient`.
-    fn gradient(&self, positions: &[Vec3], gradients: &[Vec3]) -> Mat3 {
+    /// `Σ x ⊗ ∇N` at a sample of a cell.
+    fn gradient(&self, cell: usize, sample: &Sample, positions: &[Vec3]) -> Mat3 {
         let mut F = Mat3::ZERO;
-        for (row, gradient) in self.rows.iter().zip(gradients) {
+        for (row, gradient) in self.nodes.rows(cell).iter().zip(&sample.gradients) {
             F += positions[*row as usize].outer(*gradient);
         }
         F
     }
 
-    /// Energy of all its samples [J].
-    fn energy(&self, law: &Oriented, positions: &[Vec3], memory: &[f64]) -> f64 {
-        let of_sample = |(index, sample): (usize, &Sample)| {
-            let F = self.gradient(positions, &sample.gradients) * self.reference(index, memory).inverse();
-            sample.volume * law.energy_density(&F)
-        };
-        self.samples.iter().enumerate().map(of_sample).sum()
+    /// The samples of a cell with `F_p⁻¹` and `F_e`; none of a torn one.
+    fn samples<'a>(
+        &'a self,
+        number: usize,
+        positions: &'a [Vec3],
+        own: &'a [f64],
+    ) -> impl Iterator<Item = (&'a Sample, Mat3, Mat3)> {
+        let samples = if is_torn(own) { &[] } else { &self.cells[number].samples[..] };
+        samples.iter().zip(references(own)).map(move |(sample, reference)| {
+            let F = self.gradient(number, sample, positions);
+            (sample, reference.inverse, F * reference.inverse)
+        })
     }
+
+    /// Energy of all samples of a cell [J]; none of a torn one.
+    fn energy_of(&self, cell: usize, positions: &[Vec3], own: &[f64]) -> f64 {
+        let law = self.law(cell);
+        self.samples(cell, positions, own).map(|(sample, _, F)| sample.volume * law.energy_density(&F)).sum()
+    }
+
+    /// Brings the reference of a cell that is whole on by `timestep`, and tears it where it bears too much; whether anything changed.
+    fn advance(&self, number: usize, positions: &[Vec3], timestep: f64, own: &mut [f64]) -> bool {
+        let (cell, law) = (&self.cells[number], self.law(number));
+        let before = self.energy_of(number, positions, own);
+        let (mut changed, mut tears) = (false, false);
+        for (sample, memory) in cell.samples.iter().zip(own[OF_CELL..].chunks_exact_mut(SAMPLE)) {
+            let F = self.gradient(number, sample, positions);
+            let mut reference = Reference::read(memory);
+            if self.rules.advance(&law, &F, timestep, &mut reference) {
+                reference.write(memory);
+                changed = true;
+            }
+            tears |= self.rules.tears(&law, &(F * reference.inverse), cell.strength);
+        }
+        if changed || tears {
+            own[TORN] = if tears { 1.0 } else { 0.0 };
+            own[HEAT] += before - self.energy_of(number, positions, own);
+        }
+        changed | tears
+    }
+
+    /// Tears a cell that is whole where it bears too much with what of its strain is about to go over; whether it did.
+    fn tear(&self, number: usize, positions: &[Vec3], own: &mut [f64]) -> bool {
+        let (cell, law) = (&self.cells[number], self.law(number));
+        let tears = cell.samples.iter().zip(references(own)).any(|(sample, mut reference)| {
+            let F = self.gradient(number, sample, positions);
+            self.rules.advance(&law, &F, 0.0, &mut reference);
+            self.rules.tears(&law, &(F * reference.inverse), cell.strength)
+        });
+        if tears {
+            own[HEAT] += self.energy_of(number, positions, own);
+            own[TORN] = 1.0;
+        }
+        tears
+    }
+
+    /// Calls `change` with every cell that is whole and its memory; whether any changed.
+    fn change(&self, memory: &mut [f64], change: impl Fn(usize, &mut [f64]) -> bool + Sync) -> bool {
+        let changed = AtomicBool::new(false);
+        let start_of = |cell: usize| self.cells.get(cell).map_or(self.memory_len, |cell| cell.memory);
+        parallel::fill(0..self.cells.len(), parallel::LIGHT, memory, &start_of, &|cell, own| {
+            if !is_torn(own) && change(cell, own) {
+                changed.store(true, Ordering::Relaxed);
+            }
+        });
+        changed.into_inner()
+    }
+
+    /// Whether any were turned round.
+    fn assemble(
+        &self,
+        curvature: Curvature,
+        at: &Configuration,
+        scale: f64,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        if scale == 0.0 {
+            return false;
+        }
+        self.nodes.add_blocks(curvature, &mut of(scratch).blocks, matrix, |cell, blocks| {
+            let (law, nodes) = (self.law(cell), self.nodes.rows(cell).len());
+            for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
+                let scale = -scale * sample.volume;
+                let mut gradients = [Vec3::ZERO; MAX_NODES];
+                for (changed, gradient) in gradients.iter_mut().zip(&sample.gradients) {
+                    *changed = inverse.transpose_apply(*gradient);
+                }
+                for (b, column) in gradients[..nodes].iter().enumerate() {
+                    let changes =
+                        Vec3::AXES.map(|axis| law.stress_differential(&F, &axis.outer(*column)) * scale);
+                    for (a, row) in gradients[..nodes].iter().enumerate() {
+                        let [x, y, z] = changes.map(|change| change * *row);
+                        blocks[a * nodes + b] += Mat3::from_columns(x, y, z);
+                    }
+                }
+            }
+        })
+    }
+}
+
+impl Cell {
+    fn memory_len(&self) -> usize {
+        OF_CELL + SAMPLE * self.samples.len()
+    }
+}
+
+/// Whether a cell is torn, by its memory.
+fn is_torn(own: &[f64]) -> bool {
+    own[TORN] > 0.0
+}
+
+/// Of the samples of a cell, by its memory.
+fn references(own: &[f64]) -> impl Iterator<Item = Reference> {
+    own[OF_CELL..].chunks_exact(SAMPLE).map(Reference::read)
 }
 
 impl Fracture {
@@ -310,25 +405,32 @@ impl Yielding {
 }
 
 impl Inelasticity {
-    /// Brings a sample on by `timestep`, at its deformation `F`.
-    fn advance(&self, law: &Oriented, F: &Mat3, timestep: f64, reference: &mut Reference) {
+    /// Brings a sample on by `timestep`, at its deformation `F`; whether anything went over.
+    fn advance(&self, law: &Oriented, F: &Mat3, timestep: f64, reference: &mut Reference) -> bool {
         let give = |share: f64, strain: &Strain, reference: &mut Reference| {
-            reference.F = strain.exponential(share) * reference.F;
+            reference.inverse = reference.inverse * strain.exponential(-share);
+            share > 0.0
         };
+        let mut changed = false;
         if let Some(time) = self.creep_time
-            && let Some(strain) = Strain::of(&(*F * reference.inverse()))
+            && let Some(strain) = Strain::of(&(*F * reference.inverse))
         {
-            give(-libm::expm1(-timestep / time), &strain, reference);
+            changed |= give(-libm::expm1(-timestep / time), &strain, reference);
         }
         if let Some(yielding) = self.yielding {
-            let elastic = *F * reference.inverse();
-            let Some(strain) = Strain::of(&elastic) else { return };
+            let elastic = *F * reference.inverse;
+            let Some(strain) = Strain::of(&elastic) else { return changed };
             let share = yielding.share(law, &elastic, &strain, reference.yielded);
             if share > 0.0 {
-                give(share, &strain, reference);
+                changed |= give(share, &strain, reference);
                 reference.yielded += share * strain.equivalent();
             }
         }
+        changed
+    }
+
+    fn tears(&self, law: &Oriented, F: &Mat3, strength: f64) -> bool {
+        self.fracture.is_some_and(|fracture| fracture.is_exceeded(law, F, strength))
     }
 }
 
@@ -352,27 +454,41 @@ impl Force for InelasticForce {
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
         for cell in &self.cells {
-            for sample in memory[cell.memory + TORN..][..SAMPLE * cell.samples.len()].chunks_exact_mut(SAMPLE)
+            for sample in
+                memory[cell.memory + OF_CELL..][..SAMPLE * cell.samples.len()].chunks_exact_mut(SAMPLE)
             {
                 Reference::REST.write(sample);
             }
         }
     }
 
+    fn new_scratch(&self) -> Scratch {
+        Box::new(InelasticScratch::default())
+    }
+
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let mut stored = 0.0;
-        self.for_samples(at, |cell, _, volume, _, F| stored += volume * self.law(cell).energy_density(F));
-        Energy { stored, dissipated: at.memory[HEAT] }
+        let own = |cell: usize| self.memory_of(cell, at.memory);
+        Energy {
+            stored: self.nodes.sum(|cell| self.energy_of(cell, at.positions, own(cell))),
+            dissipated: self.nodes.sum(|cell| own(cell)[HEAT]),
+        }
     }
 
     // f_a = -Σ V P(F_e) F_p⁻ᵀ ∇N_a
-    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        self.for_samples(at, |number, cell, volume, gradients, F| {
-            let stress = self.law(number).stress(F) * volume;
-            for (row, gradient) in cell.rows.iter().zip(gradients) {
-                out[*row as usize] -= stress * *gradient;
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        let parts = &mut of(scratch).parts;
+        self.nodes.fill(parts, |cell, parts| {
+            let law = self.law(cell);
+            parts.fill(Vec3::ZERO);
+            for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
+                let stress = law.stress(&F).mul_transpose(&inverse) * sample.volume;
+                parts
+                    .iter_mut()
+                    .zip(&sample.gradients)
+                    .for_each(|(part, gradient)| *part -= stress * *gradient);
             }
         });
+        self.nodes.gather(parts, out);
     }
 
     fn add_differential(
@@ -380,92 +496,91 @@ impl Force for InelasticForce {
         at: &Configuration,
         weights: TangentWeights,
         delta: &[Vec3],
-        _scratch: &mut Scratch,
+        scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
         if weights.position == 0.0 {
             return;
         }
-        self.for_samples(at, |number, cell, volume, gradients, F| {
-            let dF = cell.gradient(delta, gradients);
-            let change = self.law(number).stress_differential(F, &dF) * (volume * weights.position);
-            for (row, gradient) in cell.rows.iter().zip(gradients) {
-                out[*row as usize] -= change * *gradient;
+        let parts = &mut of(scratch).parts;
+        self.nodes.fill(parts, |cell, parts| {
+            let law = self.law(cell);
+            parts.fill(Vec3::ZERO);
+            for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
+                let dF = self.gradient(cell, sample, delta) * inverse;
+                let change = law.stress_differential(&F, &dF).mul_transpose(&inverse);
+                let change = change * (sample.volume * weights.position);
+                parts
+                    .iter_mut()
+                    .zip(&sample.gradients)
+                    .for_each(|(part, gradient)| *part -= change * *gradient);
             }
         });
+        self.nodes.gather(parts, out);
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
-        self.cells.iter().for_each(|cell| visit(&cell.rows));
+        self.nodes.visit_cliques(visit);
     }
 
     fn add_blocks(
         &self,
         at: &Configuration,
         weights: TangentWeights,
-        _scratch: &mut Scratch,
+        scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        if weights.position == 0.0 {
-            return;
-        }
-        self.for_samples(at, |number, cell, volume, gradients, F| {
-            let law = self.law(number);
-            for (column, gradient) in cell.rows.iter().zip(gradients) {
-                let changes = Vec3::AXES.map(|axis| {
-                    law.stress_differential(F, &axis.outer(*gradient)) * (-volume * weights.position)
-                });
-                for (row, gradient) in cell.rows.iter().zip(gradients) {
-                    let [x, y, z] = changes.map(|change| change * *gradient);
-                    add_block(matrix, *row as usize, *column as usize, &Mat3::from_columns(x, y, z));
-                }
-            }
-        });
+        self.assemble(Curvature::Exact, at, weights.position, scratch, matrix);
     }
 
-    fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        for (number, cell) in self.cells.iter().enumerate() {
-            if cell.is_torn(memory) {
-                continue;
-            }
-            let law = self.law(number);
-            let before = cell.energy(&law, at.positions, memory);
-            let mut is_torn = false;
-            for (index, sample) in cell.samples.iter().enumerate() {
-                let F = cell.gradient(at.positions, &sample.gradients);
-                let mut reference = cell.reference(index, memory);
-                self.rules.advance(&law, &F, timestep, &mut reference);
-                let elastic = F * reference.inverse();
-                let tears = |fracture: Fracture| fracture.is_exceeded(&law, &elastic, cell.strength);
-                is_torn |= self.rules.fracture.is_some_and(tears);
-                reference.write(&mut memory[cell.memory + TORN + SAMPLE * index..][..SAMPLE]);
-            }
-            if is_torn {
-                memory[cell.memory] = 1.0;
-            }
-            let after = if is_torn { 0.0 } else { cell.energy(&law, at.positions, memory) };
-            memory[HEAT] += before - after;
-        }
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        self.assemble(Curvature::Definite, at, weights.position, scratch, matrix)
+    }
+
+    // its memory changes where steps end: nothing is read here
+    fn advances_in_place(&self) -> bool {
+        true
+    }
+
+    fn give_way(&self, at: &Configuration, memory: &mut [f64]) -> bool {
+        self.rules.fracture.is_some() && self.change(memory, |cell, own| self.tear(cell, at.positions, own))
+    }
+
+    fn ends_steps(&self) -> bool {
+        true
+    }
+
+    fn end_step(&self, positions: &[Vec3], timestep: f64, memory: &mut [f64]) -> bool {
+        self.change(memory, |cell, own| self.advance(cell, positions, timestep, own))
     }
 
     fn bytes(&self) -> usize {
         let of_sample = |sample: &Sample| size_of::<Sample>() + size_of_val(sample.gradients.as_slice());
-        let of_cell = |cell: &Cell| {
-            size_of::<Cell>()
-                + size_of_val(cell.rows.as_slice())
-                + cell.samples.iter().map(of_sample).sum::<usize>()
-        };
-        self.cells.iter().map(of_cell).sum::<usize>() + 2 * self.material_of_cell.len()
+        let of_cell = |cell: &Cell| size_of::<Cell>() + cell.samples.iter().map(of_sample).sum::<usize>();
+        self.nodes.bytes() + self.cells.iter().map(of_cell).sum::<usize>() + 2 * self.material_of_cell.len()
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        scratch.downcast_ref().map_or(0, |InelasticScratch { parts, blocks }| {
+            size_of::<Vec3>() * parts.capacity() + size_of::<Mat3>() * blocks.capacity()
+        })
     }
 
     /// As if nothing had gone into the reference.
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
-        self.field(cell, positions, |_, _| Some(Reference::REST))
+        self.field(cell, positions, |_| Some(Reference::REST))
     }
 
     fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
-        self.field(cell, at.positions, |cell, sample| {
-            (!cell.is_torn(at.memory)).then(|| cell.reference(sample, at.memory))
+        let own = (cell < self.cells.len()).then(|| self.memory_of(cell, at.memory))?;
+        self.field(cell, at.positions, |sample| {
+            (!is_torn(own)).then(|| Reference::read(&own[OF_CELL + SAMPLE * sample..][..SAMPLE]))
         })
     }
 
@@ -479,13 +594,12 @@ impl Force for InelasticForce {
 }
 
 impl InelasticForce {
-    /// Means over a cell: the whole deformation, and the stress and energy of its elastic part, none where `reference` of a cell and its
-    /// sample is none.
+    /// Means over a cell: the whole deformation, and the stress and energy of its elastic part, none where `reference` of a sample is none.
     fn field(
         &self,
         number: usize,
         positions: &[Vec3],
-        reference: impl Fn(&Cell, usize) -> Option<Reference>,
+        reference: impl Fn(usize) -> Option<Reference>,
     ) -> Option<CellField> {
         let cell = self.cells.get(number)?;
         let law = self.law(number);
@@ -494,10 +608,9 @@ impl InelasticForce {
         let (mut energy, mut current) = (0.0, 0.0);
         for (index, sample) in cell.samples.iter().enumerate() {
             let share = sample.volume / volume;
-            let own = cell.gradient(positions, &sample.gradients);
+            let own = self.gradient(number, sample, positions);
             (F, current) = (F + own * share, current + sample.volume * own.determinant());
-            let Some(reference) = reference(cell, index) else { continue };
-            let inverse = reference.inverse();
+            let Some(Reference { inverse, .. }) = reference(index) else { continue };
             let elastic = own * inverse;
             let of_law = law.stress(&elastic);
             stress += of_law.mul_transpose(&inverse) * share;

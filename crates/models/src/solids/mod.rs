@@ -3,6 +3,7 @@
 mod adaptive;
 mod assembly;
 mod bending;
+mod cellwise;
 pub mod derived;
 mod difference;
 mod eight_samples;
@@ -10,6 +11,7 @@ mod elements;
 mod formulation;
 pub(crate) mod geometry;
 mod group;
+mod incompressible;
 mod inelastic;
 mod kernel;
 pub(crate) mod layout;
@@ -70,6 +72,7 @@ pub use formulation::{
     BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, formulated, keeps_texts,
     operator_quality,
 };
+pub use incompressible::{Incompressibility, Incompressible, Multipliers, Pressures};
 pub use inelastic::{Amount, Fracture, InelasticForce, Inelasticity, Yielding};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass, voronoi_mass};

@@ -11,9 +11,9 @@ use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::{self, Material};
 use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
-    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, InelasticForce, RayleighDamping,
-    SolidDescription, SolidForce, Viscosity, consistent_mass, formulated, lumped_mass, uniform_mass,
-    voronoi_mass,
+    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, Incompressibility, Incompressible,
+    InelasticForce, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, formulated,
+    lumped_mass, uniform_mass, voronoi_mass,
 };
 
 use super::frames::PlacedFrames;
@@ -22,8 +22,8 @@ use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
 use super::reduced::{self, PlacedReduced};
 use super::{
-    Draft, axes, bending, frames, hanging, inertial, levels, material_fields, modes, network, octree,
-    section, shape, start, tissue,
+    Draft, axes, bending, frames, hanging, incompressible, inertial, levels, material_fields, modes, network,
+    octree, section, shape, start, tissue,
 };
 use crate::diagnostic::{Code, Site};
 use crate::reader::Chosen;
@@ -270,7 +270,8 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
         let bending = bending::force(draft, body);
-        check_together(draft, body.spec);
+        check_together(draft, body);
+        incompressible::check(draft, body);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
             frames.add_mass(body.spec.mass, &density, &mut mass);
             forces.push(frames.force(body, spec));
@@ -292,7 +293,8 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             continue;
         }
         let description = modes::description(body, body.rows.start);
-        if let Err(error) = add_solid(body.spec, description, &mut forces) {
+        let kept = incompressible::rules(draft, body, spec);
+        if let Err(error) = add_solid(body.spec, description, kept, &mut forces) {
             report(draft, body.spec, &error);
         }
         forces.extend(bending);
@@ -333,26 +335,36 @@ pub fn add_point_mass(draft: &Draft, body: &Placed, first_row: usize, mass: &mut
 fn add_solid(
     body: &Body,
     description: SolidDescription,
+    kept: Option<Incompressibility>,
     forces: &mut Vec<Box<dyn Force>>,
 ) -> Result<(), FormulationError> {
+    let (mesh, first_row) = (description.mesh, description.first_row);
+    let solid = solid(body, &description)?;
+    forces.push(match kept {
+        Some(rules) => Box::new(Incompressible::new(solid, mesh, first_row, rules)),
+        None => solid,
+    });
+    add_damping(body, description, forces)
+}
+
+/// The force of its material.
+fn solid(body: &Body, description: &SolidDescription) -> Result<Box<dyn Force>, FormulationError> {
     if let Some(spec) = &body.inelasticity {
-        forces.push(Box::new(InelasticForce::new(&description, spec.rules)?));
-        return add_damping(body, description, forces);
+        return Ok(Box::new(InelasticForce::new(description, spec.rules)?));
     }
     let elastic: Box<dyn Force> = match (&body.formulation, adapted(body, description.materials.len())) {
-        (Some(chosen), _) => formulated(chosen.entry.build, &description, &chosen.values)?,
+        (Some(chosen), _) => formulated(chosen.entry.build, description, &chosen.values)?,
         (None, Some((seconds, adaptation))) => {
-            Box::new(AdaptiveForce::new(&description, &seconds, adaptation)?)
+            Box::new(AdaptiveForce::new(description, &seconds, adaptation)?)
         }
-        (None, None) => Box::new(SolidForce::new(&description)?),
+        (None, None) => Box::new(SolidForce::new(description)?),
     };
-    forces.push(match body.tangent {
+    Ok(match body.tangent {
         TangentKind::Exact => elastic,
         TangentKind::Difference => {
             Box::new(DifferencedForce::new(elastic, description.mesh, description.first_row))
         }
-    });
-    add_damping(body, description, forces)
+    })
 }
 
 /// What damps the strain of a body.
@@ -391,8 +403,21 @@ fn adapted(body: &Body, count: usize) -> Option<(Vec<Material>, Adaptation)> {
 }
 
 /// Reports what a body whose rest shape gives way cannot have besides.
-fn check_inelasticity(draft: &Draft, body: &Body) {
+fn check_inelasticity(draft: &Draft, placed: &Placed) {
+    let body = placed.spec;
     let Some(spec) = &body.inelasticity else { return };
+    if !placed.materials.all.iter().all(|material| material.law.is_objective()) {
+        let message = format!(
+            "a law of body `{}` takes rotations for strain, which would go over into its rest shape",
+            body.name
+        );
+        draft.log.add(
+            Code::Conflict,
+            &spec.site,
+            message,
+            "a law that knows rotations, such as `corotational`",
+        );
+    }
     let others = [
         ("frames", body.frames.is_some()),
         ("modes", body.modes.is_some()),
@@ -418,7 +443,8 @@ fn check_inelasticity(draft: &Draft, body: &Body) {
 }
 
 /// Reports what a body cannot have together.
-fn check_together(draft: &Draft, body: &Body) {
+fn check_together(draft: &Draft, placed: &Placed) {
+    let body = placed.spec;
     let report = |site: &Site, message: String, expected: &str| {
         draft.log.add(Code::Conflict, site, message, expected);
     };
@@ -445,7 +471,7 @@ fn check_together(draft: &Draft, body: &Body) {
         let message = format!("the points of body `{}` follow its frames or levels", body.name);
         report(&start.site, message, "`velocity` and `angular_velocity`, or a body of points alone");
     }
-    check_inelasticity(draft, body);
+    check_inelasticity(draft, placed);
     let Some(adapt) = &body.adapt else { return };
     let others = [
         ("frames", body.frames.is_some()),

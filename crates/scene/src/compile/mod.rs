@@ -13,6 +13,7 @@ mod freedom;
 mod hands;
 mod hanging;
 mod imposing;
+mod incompressible;
 mod inertial;
 mod levels;
 mod links;

@@ -189,8 +189,12 @@ pub fn of_file(
     scale: f64,
     warnings: &mut Vec<String>,
 ) -> Option<Mesh> {
-    let path = match draft.sources.open(site.place.source, file) {
-        Ok(path) => path,
+    let read = match draft.sources.text_at_hand(site.place.source, file) {
+        Some((path, text)) => Ok(souple_io::read_mesh_content(&path, text.as_bytes())),
+        None => draft.sources.open(site.place.source, file).map(|path| souple_io::read_mesh(&path)),
+    };
+    let read = match read {
+        Ok(read) => read,
         Err(error) => {
             let path = draft.sources.get(site.place.source).folder.join(file);
             let (code, message) = match error.kind() {
@@ -203,7 +207,7 @@ pub fn of_file(
             return None;
         }
     };
-    match souple_io::read_mesh(&path) {
+    match read {
         Ok((mut mesh, notes)) => {
             warnings.extend(notes.into_iter().map(|note| format!("{file}: {note}")));
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);

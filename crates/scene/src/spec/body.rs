@@ -11,6 +11,7 @@ use super::adapt::{ADAPT, AdaptSpec};
 use super::bending::{BENDING, BendingSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
+use super::incompressible::{INCOMPRESSIBLE, IncompressibleSpec};
 use super::inelasticity::{INELASTICITY, InelasticitySpec};
 use super::levels::{LEVELS, LevelsSpec};
 use super::marks::{MARKS, MarksSpec};
@@ -155,6 +156,11 @@ pub(crate) static BODY: Keys = Keys::new(
             Shape::Table(&INELASTICITY),
             "how its rest shape gives way: creep, yielding, fracture",
         ),
+        Key::new(
+            "incompressible",
+            Shape::Table(&INCOMPRESSIBLE),
+            "its volume is kept by multipliers, whatever its law",
+        ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("modes", Shape::Table(&MODES), "its natural modes carry it, in the place of its mesh"),
         Key::new(
@@ -245,6 +251,8 @@ pub struct Body {
     pub bending: Option<BendingSpec>,
     /// How its rest shape gives way; not at all where left out.
     pub inelasticity: Option<InelasticitySpec>,
+    /// How its volume is kept; as its law has it where left out.
+    pub incompressible: Option<IncompressibleSpec>,
     /// What carries it; the points of its mesh where left out.
     pub frames: Option<FramesSpec>,
     /// Natural modes that it moves in.
@@ -469,6 +477,7 @@ impl Body {
             section: reader.entry("section", &SECTIONS),
             bending: reader.table("bending").map(|table| BendingSpec::read(&table)),
             inelasticity: reader.table("inelasticity").map(|table| InelasticitySpec::read(&table)),
+            incompressible: reader.table("incompressible").map(|table| IncompressibleSpec::read(&table)),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             modes: reader.table("modes").map(|table| ModesSpec::read(&table)),
             polynomial: reader.table("polynomial").map(|table| PolynomialSpec::read(&table)),

@@ -10,6 +10,7 @@ pub mod control;
 pub mod expect;
 pub mod frames;
 pub mod hand;
+pub mod incompressible;
 pub mod inelasticity;
 pub mod interaction;
 pub mod levels;

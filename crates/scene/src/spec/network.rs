@@ -446,6 +446,7 @@ impl Network {
             section: None,
             bending: None,
             inelasticity: None,
+            incompressible: None,
             axes: None,
             material_fields: Vec::new(),
             regions: Vec::new(),

@@ -248,10 +248,32 @@ fn wording(name: &str, wording: &Wording, most: f64, effort: Effort) -> Result<V
 /// Time of a step of the second over that of the first, sample by sample in turn, and how far their motions are apart.
 fn text_over_known(
     name: &str,
-    [known, text]: [&[String]; 2],
+    settings: [&[String]; 2],
     most: f64,
     effort: Effort,
 ) -> Result<Figure, String> {
+    let figure = over_known(name, settings, effort)?;
+    Ok(Figure {
+        unit: "x built-in",
+        error_of: "motion by the law of the table".to_owned(),
+        baseline: Some(most),
+        ..figure
+    })
+}
+
+/// Steps of a solid whose rest shape may yield and does not, over those of the elastic solid that it is then.
+pub fn inelastic(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let of_element = |element: &str| {
+        let elastic = settings(element, 6, None);
+        let yields = r#"bodies.bar.inelasticity={ yielding = { stress = "1 GPa" } }"#.to_owned();
+        let inelastic: Vec<String> = elastic.iter().cloned().chain([yields]).collect();
+        over_known(&format!("{name}_{element}"), [&elastic, &inelastic], effort)
+    };
+    ["tet4", "hex8"].into_iter().map(of_element).collect()
+}
+
+/// Time of a step of one world over that of another, sample by sample in turn.
+fn over_known(name: &str, [known, text]: [&[String]; 2], effort: Effort) -> Result<Figure, String> {
     let steps = 10;
     let measured = with_threads(1, || {
         let mut known = started(known)?;
@@ -275,11 +297,11 @@ fn text_over_known(
         by_processor,
         name: format!("{name}_1t"),
         value,
-        unit: "x built-in",
+        unit: "x elastic",
         higher_is_better: false,
         error,
-        error_of: "motion by the law of the table".to_owned(),
-        baseline: Some(most),
+        error_of: "motion of the elastic solid".to_owned(),
+        baseline: None,
         threads: 1,
         samples,
         spread,

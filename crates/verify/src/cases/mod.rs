@@ -22,6 +22,7 @@ mod frequencies;
 mod hands;
 mod heat;
 mod implicit;
+mod incompressible;
 mod inelastic;
 mod late;
 mod levels;
@@ -91,6 +92,7 @@ pub const TABLES: &[&[Case]] = &[
     energy::CASES,
     explicit::CASES,
     implicit::CASES,
+    incompressible::CASES,
     inelastic::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,

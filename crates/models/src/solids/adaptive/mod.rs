@@ -392,7 +392,7 @@ impl Force for AdaptiveForce {
         true
     }
 
-    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) -> bool {
+    fn end_step(&self, positions: &[Vec3], _timestep: f64, memory: &mut [f64]) -> bool {
         let count = self.mesh.cell_count();
         // taken out: where threads share the work, this one may be given a part of another's
         let mut excesses = EXCESS.take();
