@@ -10,7 +10,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
-use crate::binding::Binding;
+use crate::binding::ConstraintSet;
 use crate::hand::InHand;
 use crate::holding::Holding;
 use crate::kept::{Kept, KeptRef};
@@ -438,7 +438,7 @@ pub trait Force: Send + Sync {
 
     /// What of it relates points by forces that a step solves for; `None` of a force that says itself how it pushes. Between steps such a
     /// force gives what was found last.
-    fn binding(&self) -> Option<&dyn Binding> {
+    fn constraint_set(&self) -> Option<&dyn ConstraintSet> {
         None
     }
 

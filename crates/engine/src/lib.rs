@@ -36,7 +36,7 @@ pub mod tool;
 pub mod unilateral;
 pub mod world;
 
-pub use binding::Binding;
+pub use binding::ConstraintSet;
 pub use constraint::{Constraint, Motion};
 pub use control::{CONTROL_LEN, Control};
 pub use detection::{Detected, Detection};

@@ -21,7 +21,7 @@ pub enum ModesError {
     #[error(
         "`{force}` relates points by forces that are solved for in steps, which have no stiffness that modes could be found of; a stiff link, or a constraint with `augmented`, has one"
     )]
-    Bound { force: String },
+    ConstraintSolver { force: String },
     #[error("what is held leaves {motions} rigid motions free")]
     Loose { motions: usize },
 }
@@ -106,9 +106,9 @@ fn matrices<'a>(
     ws: &'a mut SystemWorkspace,
 ) -> Result<(&'a BlockMatrix, BlockMatrix), ModesError> {
     if let Some(force) =
-        system.forces.iter().find(|force| force.binding().is_some() || force.unilateral().is_some())
+        system.forces.iter().find(|force| force.constraint_set().is_some() || force.unilateral().is_some())
     {
-        return Err(ModesError::Bound { force: force.name().to_owned() });
+        return Err(ModesError::ConstraintSolver { force: force.name().to_owned() });
     }
     let balanced = vec![Vec3::ZERO; system.kinematics.row_count()];
     let SystemWorkspace { scratches, rows, tangent, .. } = ws;

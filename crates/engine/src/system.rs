@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use souple_math::{Mat3, Vec3, logarithm, orthonormalised};
 
-use crate::binding::Bound;
+use crate::binding::ConstraintSolver;
 use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights, Unmet};
 use crate::holding::HeldPoints;
@@ -74,7 +74,7 @@ pub struct SystemWorkspace {
     pub implicit: Option<ImplicitBuffers>,
     pub staggered: StaggeredBuffers,
     pub held: HeldPoints,
-    pub(crate) bound: Bound,
+    pub(crate) constraint_solver: ConstraintSolver,
     pub stages: StageTimes,
     /// What may break a step off.
     pub interruption: Interruption,
@@ -177,7 +177,7 @@ impl SystemWorkspace {
             + self.tangent.bytes()
             + self.linear.bytes()
             + self.held.bytes()
-            + self.bound.bytes()
+            + self.constraint_solver.bytes()
             + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
     }
 }
@@ -205,7 +205,7 @@ impl System {
             ));
         }
         let binds =
-            self.forces.iter().find(|force| force.binding().is_some() || force.unilateral().is_some());
+            self.forces.iter().find(|force| force.constraint_set().is_some() || force.unilateral().is_some());
         if let Some(force) = binds.filter(|_| !self.stepper.binds_points(self)) {
             let hindered = if !self.mass.is_lumped() {
                 "; masses of this system are not lumped"
@@ -276,7 +276,7 @@ impl System {
             implicit: None,
             staggered: StaggeredBuffers::default(),
             held: HeldPoints::default(),
-            bound: Bound::default(),
+            constraint_solver: ConstraintSolver::default(),
             stages: StageTimes::default(),
             interruption: Interruption::default(),
         }

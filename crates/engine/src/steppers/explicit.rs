@@ -174,7 +174,7 @@ pub(super) fn bound_accelerations(
     let memory = next.memory.clone();
     bind(step, Sought::Accelerations, next, ws)?;
     next.memory = memory;
-    ws.bound.remember_rates(step, &ws.rows.positions, &mut next.memory);
+    ws.constraint_solver.remember_rates(step, &ws.rows.positions, &mut next.memory);
     for (out, (force, mass)) in out.iter_mut().zip(ws.row_force.iter().zip(&system.mass.diagonal)) {
         *out = *force / *mass;
     }

@@ -240,7 +240,7 @@ pub trait Stepper: Send + Sync {
         false
     }
 
-    /// Whether it solves for the forces of relations between points, see [`crate::Binding`].
+    /// Whether it solves for the forces of relations between points, see [`crate::ConstraintSet`].
     fn binds_points(&self, _system: &System) -> bool {
         false
     }

@@ -12,7 +12,7 @@
 
 use std::any::Any;
 
-use souple_engine::binding::{self, Binding, Earlier};
+use souple_engine::binding::{self, ConstraintSet, Earlier};
 use souple_engine::tangent::add_block;
 use souple_engine::{
     Configuration, Declaration, Energy, Force, LinkShown, LinkState, Pair, Scratch, TangentWeights,
@@ -125,7 +125,7 @@ fn rate_at(relation: &dyn Relation, at: &Configuration) -> Vec3 {
     rate(relation, (at.positions, at.velocities, at.time), &mut Vec::new())
 }
 
-impl Binding for Constraints {
+impl ConstraintSet for Constraints {
     fn relation_count(&self) -> usize {
         self.relations.len()
     }
@@ -235,7 +235,7 @@ impl Force for Constraints {
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        if self.binding().is_some() {
+        if self.constraint_set().is_some() {
             binding::add_forces(self, at, out);
             return;
         }
@@ -307,9 +307,9 @@ impl Force for Constraints {
         }
     }
 
-    fn binding(&self) -> Option<&dyn Binding> {
+    fn constraint_set(&self) -> Option<&dyn ConstraintSet> {
         matches!(self.keeping, Keeping::Exact { .. } | Keeping::Yielding { .. })
-            .then_some(self as &dyn Binding)
+            .then_some(self as &dyn ConstraintSet)
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {

@@ -88,7 +88,7 @@ pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, in
 /// Refuses constraints which are kept exactly and share masses so often that memory does not hold the matrix of their forces.
 pub fn check_size(network: &Network, body: &Placed, constraints: &[Made], log: &Log) {
     let mut shared = vec![0_u64; body.mesh.points.len()];
-    let exact = constraints.iter().filter_map(Made::kept).filter(|it| it.binding().is_some());
+    let exact = constraints.iter().filter_map(Made::kept).filter(|it| it.constraint_set().is_some());
     let rows = exact.flat_map(|it| it.relations().iter().flat_map(|relation| relation.rows()));
     for row in rows {
         shared[*row as usize - body.rows.start] += 1;

@@ -1,0 +1,110 @@
+//! Forces of contacts by projected Gauss–Seidel sweeps, whose changes are extrapolated.
+
+use souple_math::Vec3;
+
+use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, SWEEPS_OF_ROUND};
+
+/// What a sweep did to forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sweep {
+    Settled,
+    Moved,
+}
+
+impl ContactSystem {
+    /// Finds what forces are to be changed by, in sweeps. The first of a step begins with the forces of the step before.
+    pub(super) fn solve(&mut self, is_first: bool) {
+        let count = self.sought.len();
+        for list in [&mut self.change, &mut self.swept, &mut self.direction] {
+            list.clear();
+            list.resize(count, Vec3::ZERO);
+        }
+        if is_first {
+            for (place, contact) in self.sought.iter().enumerate() {
+                self.change[place] = self.contacts[*contact as usize].force_before;
+            }
+        }
+        let mut size_before = f64::INFINITY;
+        for sweep in 1..=SWEEPS_OF_ROUND {
+            self.report.contact_iterations += 1;
+            // what is extrapolated may pull or leave its cone: a round ends with a sweep
+            if self.sweep() == Sweep::Settled || sweep == SWEEPS_OF_ROUND {
+                return;
+            }
+            let size: f64 =
+                self.swept.iter().zip(&self.stiffest).map(|(by, [n, _])| by.length_sq() * n).sum();
+            let ratio = size / size_before;
+            size_before = size;
+            if ratio >= 1.0 {
+                self.direction.fill(Vec3::ZERO);
+                size_before = f64::INFINITY;
+                continue;
+            }
+            for place in 0..count {
+                self.change[place] += self.direction[place] * ratio;
+                self.direction[place] = self.direction[place] * ratio + self.swept[place];
+            }
+        }
+    }
+
+    /// Gives each contact in turn the force that it asks for.
+    pub(super) fn sweep(&mut self) -> Sweep {
+        let mut found = Sweep::Settled;
+        for place in 0..self.sought.len() {
+            let contact = &self.contacts[self.sought[place] as usize];
+            let mut off = self.off[place];
+            for slot in self.starts[place]..self.starts[place + 1] {
+                off += self.blocks[slot] * self.change[self.columns[slot] as usize];
+            }
+            let by = self.wanted_change(place, contact.force + self.change[place], off, contact.law.friction);
+            // closer than is asked where the step leads, where it is measured again
+            if self.length_of(place, by) > 0.2 * (CONVERGED * self.scale + contact.near) {
+                found = Sweep::Moved;
+            }
+            self.swept[place] = by;
+            self.change[place] += by;
+        }
+        found
+    }
+
+    /// What a contact that is off asks its force to change by: the projection onto signs, and then onto the friction cone, with the slip that the
+    /// normal force leaves.
+    pub(super) fn wanted_change(&self, place: usize, force: Vec3, off: Vec3, friction: f64) -> Vec3 {
+        let [normal, tangent] = self.stiffest[place];
+        if normal <= 0.0 {
+            return Vec3::ZERO;
+        }
+        let push = (force.x - off.x / normal).max(0.0);
+        let slip = off + self.blocks[self.own[place]].columns[0] * (push - force.x);
+        let held = friction * push;
+        let (mut y, mut z) = (0.0, 0.0);
+        if held > 0.0 && tangent > 0.0 {
+            (y, z) = (force.y - slip.y / tangent, force.z - slip.z / tangent);
+            let length = y.hypot(z);
+            if length > held {
+                (y, z) = (y * (held / length), z * (held / length));
+            }
+        }
+        Vec3::new(push, y, z) - force
+    }
+
+    /// How far a change of a contact's force moves itself [m].
+    pub(super) fn length_of(&self, place: usize, change: Vec3) -> f64 {
+        let [normal, tangent] = self.stiffest[place];
+        (change.x.abs() * normal).max(change.y.hypot(change.z) * tangent)
+    }
+
+    /// Whether no contact asks for another force, or sweeps do not help any more and what is left may pass.
+    pub(super) fn is_solved(&mut self) -> bool {
+        let (mut worst, mut is_solved) = (0.0_f64, true);
+        for (place, contact) in self.sought.iter().enumerate() {
+            let contact = &self.contacts[*contact as usize];
+            let by = self.wanted_change(place, contact.force, self.off[place], contact.law.friction);
+            let off = self.length_of(place, by);
+            worst = worst.max(off);
+            is_solved &= off <= contact.near + CONVERGED * self.scale;
+        }
+        self.report.contact_residual = if worst > 0.0 { worst / self.scale.max(worst) } else { 0.0 };
+        is_solved || self.report.contact_iterations >= MOST_SWEEPS && self.report.contact_residual <= LET_PASS
+    }
+}

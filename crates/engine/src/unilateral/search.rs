@@ -1,0 +1,197 @@
+//! Which contacts there are in a step, which of them forces are sought of, and how far off these are where it leads.
+
+use souple_math::{Mat3, Vec3};
+
+use crate::binding::Solved;
+use crate::state::SystemState;
+use crate::steppers::{Step, StepError, StepReport};
+
+use super::{Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, TOLERANCE, fault, pairs_in};
+
+impl ContactSystem {
+    /// Looks which contacts there are where the step starts, and takes their forces of the step before, which are among those that were summed, off where
+    /// it leads.
+    pub(crate) fn begin(
+        &mut self,
+        moving: &Moving,
+        state: &SystemState,
+        places: &mut [Vec3],
+    ) -> Result<(), StepError> {
+        let Step { system, start, timestep, .. } = *moving.step;
+        self.contacts.clear();
+        self.sought.clear();
+        (self.rounds, self.report) = (0, StepReport::default());
+        let earlier = (start - timestep).max(0.0);
+        for (index, force) in system.forces.iter().enumerate() {
+            let Some(unilateral) = force.unilateral() else { continue };
+            let (pairs, memory) = (pairs_in(state, index), &state.memory[system.memory_range(index)]);
+            for number in 0..unilateral.contact_count(pairs) {
+                let sides = unilateral.sides(number, pairs);
+                let slope = unilateral.slope(number, pairs, moving.positions, start);
+                let steepness = slope.length();
+                let value = unilateral.gap(number, pairs, moving.positions, start);
+                let stored = unilateral.force(number, memory, pairs);
+                for (row, weight) in sides.iter() {
+                    places[row] -= moving.inverse_masses[row] * stored * (weight * timestep * timestep);
+                }
+                if !(value.is_finite() && steepness.is_finite()) {
+                    let what = "has no value, or no slope, where masses are";
+                    return Err(fault(moving.step, state, (index, number), what));
+                }
+                // points at one place part along x
+                let normal = slope.try_normalised().unwrap_or(Vec3::X);
+                let steepness = if steepness > 0.0 { steepness } else { 1.0 };
+                let across = normal.any_orthogonal();
+                let frame = Mat3::from_columns(normal, across, normal.cross(across)).transpose();
+                let before = unilateral.gap(number, pairs, moving.before, earlier);
+                let reach = sides
+                    .iter()
+                    .flat_map(|(row, _)| moving.positions[row].to_array())
+                    .fold(0.0_f64, |most, x| most.max(x.abs()));
+                let weights: f64 = sides.iter().map(|(_, weight)| weight.abs()).sum();
+                self.contacts.push(Contact {
+                    of: (index, number),
+                    sides,
+                    frame,
+                    steepness,
+                    law: unilateral.law(),
+                    gap: value / steepness,
+                    narrowing: (value - before) / steepness,
+                    wanted: 0.0,
+                    carried: unilateral.surface_velocity(number, start + timestep) * timestep,
+                    force: Vec3::ZERO,
+                    force_before: frame * stored,
+                    near: TOLERANCE * weights * reach,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Where forces of contacts are to be changed after relations hold: changes them, and where the step leads with them; whether there was anything to change.
+    pub(crate) fn improve(
+        &mut self,
+        moving: &Moving,
+        state: &SystemState,
+        places: &mut [Vec3],
+    ) -> Result<bool, StepError> {
+        let is_first = self.rounds == 0;
+        let is_more = match is_first {
+            true => self.decide(moving, state, places)?,
+            false => self.seek_more(moving, state, places)?,
+        };
+        self.measure(moving, state, places)?;
+        if self.sought.is_empty() {
+            return Ok(false);
+        }
+        // what follows asks how contacts move each other, that a step is given up too
+        if is_more {
+            self.lay_out(moving);
+        }
+        if is_more || moving.solved == Solved::WithOthers {
+            self.fill(moving)?;
+        }
+        if !is_more && self.is_solved() {
+            return Ok(false);
+        }
+        if self.rounds == MOST_ROUNDS || self.report.contact_iterations >= MOST_SWEEPS {
+            return Err(self.unsolved(moving.step, state));
+        }
+        self.rounds += 1;
+        if is_first {
+            self.scale = self
+                .off
+                .iter()
+                .fold(0.0, |most, off| off.to_array().map(f64::abs).into_iter().fold(most, f64::max));
+        }
+        self.solve(is_first);
+        for (place, contact) in self.sought.iter().enumerate() {
+            let contact = &mut self.contacts[*contact as usize];
+            let change = self.change[place];
+            contact.force += change;
+            let push = contact.frame.transpose_apply(change);
+            for (row, weight) in contact.sides.iter() {
+                let moved = moving.inverse_masses[row] * push;
+                places[row] += moved * (weight * moving.step.timestep * moving.step.timestep);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The gap where the step leads, over the steepness [m].
+    fn gap_at(
+        &self,
+        contact: &Contact,
+        moving: &Moving,
+        state: &SystemState,
+        places: &[Vec3],
+    ) -> Result<f64, StepError> {
+        let (force, number) = contact.of;
+        let Some(unilateral) = moving.step.system.forces[force].unilateral() else { return Ok(0.0) };
+        let value = unilateral.gap(number, pairs_in(state, force), places, moving.step.end());
+        if !value.is_finite() {
+            return Err(fault(moving.step, state, contact.of, "has no value where the step leads"));
+        }
+        Ok(value / contact.steepness)
+    }
+
+    /// Which contacts collide, which come to rest, and which others may be pushed together by them; whether there are any.
+    fn decide(&mut self, moving: &Moving, state: &SystemState, places: &[Vec3]) -> Result<bool, StepError> {
+        self.off.clear();
+        let mut deepest = 0.0_f64;
+        for index in 0..self.contacts.len() {
+            let contact = self.contacts[index];
+            let end = self.gap_at(&contact, moving, state, places)?;
+            deepest = deepest.max(-end);
+            self.off.push(Vec3::X * end);
+            if end < 0.0 && contact.narrowing < -contact.near && contact.law.restitution > 0.0 {
+                self.contacts[index].wanted = contact.gap - contact.law.restitution * contact.narrowing;
+            }
+        }
+        self.is_sought.clear();
+        self.is_sought.resize(self.contacts.len(), false);
+        for (index, contact) in self.contacts.iter().enumerate() {
+            let end = self.off[index].x;
+            if end < contact.near.max(deepest) || contact.force_before.x > 0.0 {
+                self.is_sought[index] = true;
+                self.sought.push(index as u32);
+            }
+        }
+        Ok(!self.sought.is_empty())
+    }
+
+    /// Adds contacts that are pushed together by others; whether there are any.
+    fn seek_more(
+        &mut self,
+        moving: &Moving,
+        state: &SystemState,
+        places: &[Vec3],
+    ) -> Result<bool, StepError> {
+        let mut is_any = false;
+        for index in 0..self.contacts.len() {
+            let contact = &self.contacts[index];
+            if !self.is_sought[index] && self.gap_at(contact, moving, state, places)? < -contact.near {
+                self.sought.push(index as u32);
+                self.is_sought[index] = true;
+                is_any = true;
+            }
+        }
+        if is_any {
+            self.sought.sort_unstable();
+        }
+        Ok(is_any)
+    }
+
+    /// How far off the sought contacts are where the step leads: the gap from what is wanted, and the slip [m].
+    fn measure(&mut self, moving: &Moving, state: &SystemState, places: &[Vec3]) -> Result<(), StepError> {
+        self.off.clear();
+        for index in 0..self.sought.len() {
+            let contact = &self.contacts[self.sought[index] as usize];
+            let normal = self.gap_at(contact, moving, state, places)? - contact.wanted;
+            let slip = contact.sides.relative(|row| places[row] - moving.positions[row]) - contact.carried;
+            let slip = contact.frame * slip;
+            self.off.push(Vec3::new(normal, slip.y, slip.z));
+        }
+        Ok(())
+    }
+}
