@@ -74,6 +74,7 @@ impl Failure {
             StepError::ForceNotFinite { row, .. }
             | StepError::SlopeNotFinite { row, .. }
             | StepError::Fault { row, .. }
+            | StepError::LimitsUnsettled { row, .. }
             | StepError::Unkept { row, .. }
             | StepError::Unmet { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),

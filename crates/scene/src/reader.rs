@@ -192,6 +192,12 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The same of a number without a default, measured in a unit that depends on other keys.
+    pub fn maybe_number_in(&self, name: &str, unit: &'static str) -> Option<f64> {
+        let expected = self.key(name).in_unit(unit).expected();
+        self.read(name, |value, key, _| value.number(unit, key.range, &expected))
+    }
+
     /// NaN in place of a number that was refused.
     pub fn number(&self, name: &str) -> f64 {
         self.maybe_number(name).unwrap_or(f64::NAN)

@@ -26,3 +26,4 @@ mod skins;
 mod split;
 mod surfaces;
 mod textures;
+mod yielding;

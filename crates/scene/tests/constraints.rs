@@ -277,6 +277,8 @@ fn wrong_constraints_are_refused() {
         (kind("nail = {}, yields_at = 1"), "this constraint does not give way"),
         (kind("rod = { chain = true }, yields_at = 1, time = 1"), "what gives way holds at once"),
         (kind("rod = { chain = true }, yields_at = 0"), "yields_at"),
+        (kind("rod = { chain = true }, yields_at = \"5 N m\""), "N"),
+        (kind("angle = { corners = [[0, 1, 2]] }, yields_at = \"5 N\""), "N m"),
         (kind("angle = { corners = [] }"), "there are no corners"),
         (kind("angle = { corners = [[0, 1, 1]] }"), "corners[0] is [0.0, 1.0, 1.0]"),
         (kind("angle = { corners = [[0, 1, 2]] }"), "corners[0] is of mass 2, and there are 2"),

@@ -10,7 +10,7 @@ use crate::system::SystemWorkspace;
 use super::memory::{earlier, flow, known, known_at};
 use super::structure::Structure;
 use super::{
-    ConstraintSolver, Earlier, IDLE, RAISE, ROUNDING, TOLERANCE, fault, nearest, unsolved, value_near,
+    ConstraintSolver, Earlier, IDLE, RAISE, ROUNDING, TOLERANCE, fault, nearest, rate, unsolved, value_near,
 };
 
 impl ConstraintSolver {
@@ -63,8 +63,13 @@ impl ConstraintSolver {
             let flow = Vec3::X * flow(memory, set.relation_count(), *relation);
             let now = value_near(set, *relation, (positions, start), flow);
             self.now.push(now);
-            let earlier = self.earlier(step, structure, index, now, (positions, memory)).from(flow);
-            let wanted = flow + set.wanted(*relation, earlier, now - flow, start, timestep);
+            // what yields holds at once
+            let wanted = if set.yields_at(*relation).is_some() {
+                flow
+            } else {
+                let earlier = self.earlier(step, structure, index, now, (positions, memory));
+                set.wanted(*relation, earlier, now, start, timestep)
+            };
             let entries = structure.starts[index]..structure.starts[index + 1];
             if !(now.is_finite() && self.gradients[entries].iter().all(|gradient| gradient.is_finite())) {
                 return Err(fault(step, structure, index, "has no value, or no slope, where masses are"));
@@ -80,7 +85,7 @@ impl ConstraintSolver {
     /// What a relation was before: its value where the last step started, if a step from there has led here; otherwise, at the start and after edits,
     /// what it changes by in a second.
     pub(super) fn earlier(
-        &self,
+        &mut self,
         step: &Step,
         structure: &Structure,
         index: usize,
@@ -110,7 +115,7 @@ impl ConstraintSolver {
                 return Earlier::Value(before);
             }
         }
-        Earlier::Rate(set.rate(relation, positions, &self.led, start))
+        Earlier::Rate(rate(set, relation, (positions, &self.led, start), &mut self.unscaled))
     }
 
     /// How far off a relation may be by the coordinates of its own points, by gradients that are not scaled.

@@ -14,8 +14,8 @@
 //! `Σ (J W Jᵀ)_cc λ_c²` are found. Relations that contradict each other are told, not shared out.
 //!
 //! A relation of one component may yield: `|λ| ≤ Y`, and where that is reached it gives way and what it is to be goes along, `w' = g(x', t')`, a
-//! perfectly plastic flow `p` from what it was told. Which do is found by a primal–dual active set (Hintermüller, Ito & Kunisch 2003): those at their limit push with that
-//! and are not solved for, the others are; one whose multiplier comes out beyond its limit is held at that, one that would flow against its push holds again.
+//! perfectly plastic flow `p` from what it was told. Which do is a quadratic problem between bounds, solved to first order in each iteration
+//! of Newton's method ([`limits`]). What yields takes `Y |Δp|`, and works on masses what it is told to change by times its multiplier.
 
 mod commit;
 mod limits;
@@ -23,6 +23,7 @@ mod linearise;
 mod memory;
 mod solve;
 mod structure;
+mod switching;
 
 use souple_math::{Mat3, Vec3};
 use souple_solve::SolveError;
@@ -36,7 +37,8 @@ pub use memory::{memory_len, multiplier, set_multiplier, yielding_memory_len};
 pub(crate) use solve::{Solved, Sought, bind};
 pub(crate) use structure::Structure;
 
-use limits::Flowing;
+use limits::{Flowing, Yielding};
+use switching::Wrong;
 
 /// Of a diagonal entry, what is added to it: far above rounding, so that relations which repeat others have a pivot, and far
 /// below the least eigenvalue of the scaled matrix of thousands of rods in a row, `(π/n)²/2`, so that solves converge.
@@ -50,8 +52,6 @@ const ROUNDING: f64 = 2e-15;
 const MOST_SOLVES: u32 = 50;
 /// On the diagonal of a component that no force can change, or that has given way: it is not solved for.
 const IDLE: f64 = 1.0;
-/// How often those that give way may be others before a step is given up.
-const MOST_SWITCHES: u32 = 100;
 
 /// What is known of a relation before a step starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,16 +60,6 @@ pub enum Earlier {
     Value(Vec3),
     /// `ġ` at the start, where no step led there.
     Rate(Vec3),
-}
-
-impl Earlier {
-    /// The same of what is counted from another value.
-    fn from(self, value: Vec3) -> Self {
-        match self {
-            Self::Value(before) => Self::Value(before - value),
-            rate @ Self::Rate(_) => rate,
-        }
-    }
 }
 
 /// What of a force relates points.
@@ -90,8 +80,8 @@ pub trait ConstraintSet: Send + Sync {
     /// `∂g/∂x` for each of its rows in turn: the gradient of a component in each row of the matrix.
     fn add_gradients(&self, relation: usize, positions: &[Vec3], time: f64, gradients: &mut Vec<Mat3>);
 
-    /// `ġ = J v + ∂g/∂t` of points that move so.
-    fn rate(&self, relation: usize, positions: &[Vec3], velocities: &[Vec3], time: f64) -> Vec3;
+    /// `∂g/∂t` where points stay.
+    fn time_rate(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3;
 
     /// How large the numbers are of which `g` is the difference.
     fn magnitude(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3;
@@ -103,13 +93,32 @@ pub trait ConstraintSet: Send + Sync {
     fn wanted(&self, relation: usize, earlier: Earlier, now: Vec3, start: f64, timestep: f64) -> Vec3;
 
     /// The greatest multiplier, of either sign, by which a relation of one component is kept: where more would be needed it gives way, and stays
-    /// as it was then. `None` where it is kept by whatever is needed.
+    /// as it was then. Such a relation is wanted to be zero. `None` where it is kept by whatever is needed.
     fn yields_at(&self, _relation: usize) -> Option<f64> {
+        None
+    }
+
+    /// What of a relation that gives way has no meaning any more, in words, where its points went from some places to others within a step.
+    fn is_lost_between(&self, _relation: usize, _from: &[Vec3], _to: &[Vec3]) -> Option<&'static str> {
         None
     }
 
     /// What it is, in words.
     fn describe(&self, relation: usize) -> String;
+}
+
+/// `ġ = J v + ∂g/∂t` of points that move so; gradients are scratch.
+fn rate(
+    set: &dyn ConstraintSet,
+    relation: usize,
+    (positions, velocities, time): (&[Vec3], &[Vec3], f64),
+    gradients: &mut Vec<Mat3>,
+) -> Vec3 {
+    gradients.clear();
+    set.add_gradients(relation, positions, time, gradients);
+    let rows = set.rows(relation).iter().zip(gradients.iter());
+    let moved: Vec3 = rows.map(|(row, gradient)| *gradient * velocities[*row as usize]).sum();
+    moved + set.time_rate(relation, positions, time)
 }
 
 /// The value of a relation where whole periods make no difference: the one nearest to another, so that what flows on does not come back.
@@ -126,17 +135,16 @@ fn nearest(value: Vec3, period: f64, near: Vec3) -> Vec3 {
     if period > 0.0 { value - Vec3::X * (period * ((value.x - near.x) / period).round()) } else { value }
 }
 
-/// `out += Jᵀ λ` of the multipliers in a force's memory.
-pub fn add_forces(set: &dyn ConstraintSet, at: &Configuration, out: &mut [Vec3]) {
-    let mut gradients = Vec::new();
+/// `out += Jᵀ λ` of the multipliers in a force's memory; gradients are scratch.
+pub fn add_forces(set: &dyn ConstraintSet, at: &Configuration, gradients: &mut Vec<Mat3>, out: &mut [Vec3]) {
     for relation in 0..set.relation_count() {
         let multiplier = multiplier(at.memory, relation);
         if multiplier == Vec3::ZERO {
             continue;
         }
         gradients.clear();
-        set.add_gradients(relation, at.positions, at.time, &mut gradients);
-        for (row, gradient) in set.rows(relation).iter().zip(&gradients) {
+        set.add_gradients(relation, at.positions, at.time, gradients);
+        for (row, gradient) in set.rows(relation).iter().zip(gradients.iter()) {
             out[*row as usize] += gradient.transpose_apply(multiplier);
         }
     }
@@ -159,8 +167,9 @@ pub(crate) struct ConstraintSolver {
     /// One step before, and where the step leads [m].
     before: Vec<Vec3>,
     places: Vec<Vec3>,
-    /// Where it led before contacts pushed last [m].
+    /// Where it led before contacts pushed last [m], and the multipliers then.
     unpushed: Vec<Vec3>,
+    unpushed_multipliers: Vec<Vec3>,
     /// Of points where the step starts, and where it leads [m/s].
     velocities: Vec<Vec3>,
     led: Vec<Vec3>,
@@ -176,6 +185,18 @@ pub(crate) struct ConstraintSolver {
     active: Vec<Vec3>,
     /// Of each relation.
     flowing: Vec<Flowing>,
+    /// Those that may give way; likewise those between masses that are all led.
+    yielding: Vec<Yielding>,
+    led_yielding: Vec<Yielding>,
+    wrong: Vec<Wrong>,
+    /// What those that are held are to change by, and what all changes do to rows.
+    held: Vec<Vec3>,
+    stride: Vec<Vec3>,
+    /// What relations are left off by, scaled.
+    left: Vec<Vec3>,
+    response: Vec<Vec3>,
+    /// Of the relation at hand.
+    unscaled: Vec<Mat3>,
     contacts: ContactSystem,
 }
 

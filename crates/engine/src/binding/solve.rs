@@ -5,11 +5,12 @@ use souple_math::{Mat3, Vec3};
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::SystemWorkspace;
-use crate::unilateral::Moving;
+use crate::unilateral::{ContactSystem, Moving};
 
 use super::limits::Flowing;
 use super::structure::Structure;
-use super::{ConstraintSolver, MOST_SOLVES, MOST_SWITCHES, fault, unsolved, value_near};
+use super::switching::Pivoting;
+use super::{ConstraintSolver, MOST_SOLVES, fault, unsolved, value_near};
 
 /// How relations were solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,14 +78,16 @@ impl ConstraintSolver {
         self.remove_forces_before(step, structure, next);
         self.multipliers.clear();
         self.multipliers.resize(structure.relations.len(), Vec3::ZERO);
-        self.flow_on(step, structure, next);
+        self.flow_on(step, structure, next)?;
         if structure.relation_count() > 0 {
             self.factorize(step, structure)?;
         }
         if sought == Sought::Accelerations || !step.system.has_contacts() {
             self.allow_rounding(step, structure);
+            self.flow_as_led(step, structure)?;
             self.solve(step, structure)?;
-            self.commit(step, structure, next, &mut ws.row_force);
+            self.check_flows(step, structure, &ws.rows.positions)?;
+            self.commit((step, structure), &ws.rows.positions, next, &mut ws.row_force);
             return Ok(StepReport::default());
         }
         self.keep_with_contacts(step, structure, next, ws)
@@ -104,27 +107,59 @@ impl ConstraintSolver {
         contacts.begin(&before, next, &mut places)?;
         self.places = places;
         self.allow_rounding(step, structure);
+        self.flow_as_led(step, structure)?;
         loop {
             let solved = self.solve(step, structure)?;
             if structure.relation_count() > 0 {
                 // to rounding: contacts of one body are to agree about where it is
                 self.correct(step, structure)?;
             }
-            let mut places = std::mem::take(&mut self.places);
-            self.unpushed.clone_from(&places);
-            let moving = self.moving(step, structure, &ws.rows.positions, solved);
-            let improved = contacts.improve(&moving, next, &mut places);
-            self.places = places;
-            if !improved? {
+            let positions = &ws.rows.positions;
+            if !self.push_contacts((step, structure, solved), &mut contacts, next, positions)? {
                 break;
             }
-            self.follow_contacts(step, structure)?;
         }
-        self.commit(step, structure, next, &mut ws.row_force);
+        self.check_flows(step, structure, &ws.rows.positions)?;
+        self.commit((step, structure), &ws.rows.positions, next, &mut ws.row_force);
         let moving = self.moving(step, structure, &ws.rows.positions, Solved::AsBefore);
         let report = contacts.commit(&moving, next, (&self.places, &mut ws.row_force));
         self.contacts = contacts;
         Ok(report)
+    }
+
+    /// Changes forces of contacts, with those relations giving way that do so under them; whether there was anything to change.
+    ///
+    /// What contacts push with is found with relations as they hold, and may be more than these bear. It is taken back then, and found anew
+    /// with others giving way.
+    fn push_contacts(
+        &mut self,
+        (step, structure, mut solved): (&Step, &mut Structure, Solved),
+        contacts: &mut ContactSystem,
+        state: &SystemState,
+        positions: &[Vec3],
+    ) -> Result<bool, StepError> {
+        let mut pivoting = Pivoting::default();
+        loop {
+            let mut places = std::mem::take(&mut self.places);
+            self.unpushed.clone_from(&places);
+            self.unpushed_multipliers.clone_from(&self.multipliers);
+            let moving = self.moving(step, structure, positions, solved);
+            let improved = contacts.improve(&moving, state, &mut places);
+            self.places = places;
+            if !improved? {
+                return Ok(false);
+            }
+            self.follow_contacts(step, structure)?;
+            if !self.find_wrong_after_contacts(step, structure)? {
+                return Ok(true);
+            }
+            contacts.take_back();
+            self.places.clone_from(&self.unpushed);
+            self.multipliers.clone_from(&self.unpushed_multipliers);
+            self.switch(step, structure, &mut pivoting)?;
+            self.bring_back(step, structure)?;
+            solved = Solved::WithOthers;
+        }
     }
 
     /// Moves what contacts have pushed as relations let it move, by their gradients where the step starts. A push on one mass of a body would else bring
@@ -168,36 +203,26 @@ impl ConstraintSolver {
     }
 
     /// Finds the multipliers under which the step leads to where all relations are what they are to be, but for those that give way.
-    pub(super) fn solve(&mut self, step: &Step, structure: &mut Structure) -> Result<Solved, StepError> {
+    fn solve(&mut self, step: &Step, structure: &mut Structure) -> Result<Solved, StepError> {
         let mut solved = Solved::AsBefore;
-        for _ in 0..MOST_SWITCHES {
-            self.solve_held(step, structure)?;
-            if !self.switch(step, structure) {
+        let mut solves = 0;
+        loop {
+            let worst = self.farthest_off(step, structure)?;
+            if worst.is_none() && self.is_within_limits() {
                 return Ok(solved);
             }
-            solved = Solved::WithOthers;
-            self.factorize(step, structure)?;
-        }
-        let is_yielding = |index: &usize| self.flowing[*index] != Flowing::Not;
-        let worst = (0..self.flowing.len()).find(is_yielding).unwrap_or(0);
-        Err(self.unkept(step, structure, worst))
-    }
-
-    /// The same with those that have given way pushing as they do.
-    fn solve_held(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
-        let mut solves = 0;
-        while let Some(worst) = self.farthest_off(step, structure)? {
             if solves == MOST_SOLVES {
-                return Err(self.unkept(step, structure, worst));
+                return Err(self.unkept(step, structure, worst.unwrap_or(0)));
             }
             solves += 1;
-            self.correct(step, structure)?;
+            if self.hold_or_flow(step, structure)? == Solved::WithOthers {
+                solved = Solved::WithOthers;
+            }
         }
-        Ok(())
     }
 
     /// Changes multipliers by what relations are off, and where the step leads with them.
-    fn correct(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+    pub(super) fn correct(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
         let square = step.timestep * step.timestep;
         self.change.clear();
         let active = self.off.iter().zip(self.active.iter().zip(&self.scales));
@@ -225,7 +250,11 @@ impl ConstraintSolver {
     }
 
     /// The relation that is farthest from what it is to be where the step leads; `None` where all are near enough.
-    fn farthest_off(&mut self, step: &Step, structure: &Structure) -> Result<Option<usize>, StepError> {
+    pub(super) fn farthest_off(
+        &mut self,
+        step: &Step,
+        structure: &Structure,
+    ) -> Result<Option<usize>, StepError> {
         self.off.clear();
         let mut worst: Option<(usize, f64)> = None;
         for (index, (force, relation)) in structure.relations.iter().enumerate() {

@@ -145,6 +145,10 @@ pub enum StepError {
         "`{force}`: {what} is off by {off:.1e} after {solves} solves (time {time} s), {wanted:.1e} is wanted: raise the penalty, or what it may be off by; where all of it is held or led there is nothing that could give"
     )]
     Unmet { force: String, what: &'static str, off: f64, wanted: f64, solves: u32, row: usize, time: f64 },
+    #[error(
+        "`{force}`: which constraints give way is not found, among them {relation} (time {time} s): take a smaller step"
+    )]
+    LimitsUnsettled { force: String, relation: String, row: usize, time: f64 },
     #[error("{0}")]
     Field(String),
     /// It was broken off from outside ([`crate::Interruption`]).

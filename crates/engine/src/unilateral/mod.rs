@@ -183,6 +183,8 @@ pub(crate) struct ContactSystem {
     /// The greatest way by which a gap or a slip is off without forces [m].
     scale: f64,
     rounds: u32,
+    /// Whether it is known in this step which collide.
+    are_decided: bool,
     report: StepReport,
 }
 

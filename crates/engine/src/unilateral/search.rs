@@ -21,6 +21,7 @@ impl ContactSystem {
         self.contacts.clear();
         self.sought.clear();
         (self.rounds, self.report) = (0, StepReport::default());
+        self.are_decided = false;
         let earlier = (start - timestep).max(0.0);
         for (index, force) in system.forces.iter().enumerate() {
             let Some(unilateral) = force.unilateral() else { continue };
@@ -76,9 +77,9 @@ impl ContactSystem {
         places: &mut [Vec3],
     ) -> Result<bool, StepError> {
         let is_first = self.rounds == 0;
-        let is_more = match is_first {
-            true => self.decide(moving, state, places)?,
-            false => self.seek_more(moving, state, places)?,
+        let is_more = match std::mem::replace(&mut self.are_decided, true) {
+            false => self.decide(moving, state, places)?,
+            true => self.seek_more(moving, state, places)?,
         };
         self.measure(moving, state, places)?;
         if self.sought.is_empty() {
@@ -116,6 +117,14 @@ impl ContactSystem {
             }
         }
         Ok(true)
+    }
+
+    /// Takes back what forces were changed by last: relations do not bear it.
+    pub(crate) fn take_back(&mut self) {
+        self.rounds -= 1;
+        for (contact, change) in self.sought.iter().zip(&self.change) {
+            self.contacts[*contact as usize].force -= *change;
+        }
     }
 
     /// The gap where the step leads, over the steepness [m].

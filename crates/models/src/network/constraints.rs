@@ -72,10 +72,15 @@ impl Constraints {
     /// The multipliers of a relation, in the units of its components: what pushes its masses along its gradients. By the augmented
     /// Lagrangian the whole of what does.
     pub fn multiplier(&self, relation: usize, at: &Configuration) -> Vec3 {
+        self.multiplier_by(relation, at, &mut Vec::new())
+    }
+
+    /// The same; gradients are scratch.
+    fn multiplier_by(&self, relation: usize, at: &Configuration, gradients: &mut Vec<Mat3>) -> Vec3 {
         let kept = binding::multiplier(at.memory, relation);
         let Keeping::Augmented(Augmented { stiffness, damping, .. }) = self.keeping else { return kept };
         let relation = &self.relations[relation];
-        let rate = if damping > 0.0 { rate_at(&**relation, at) } else { Vec3::ZERO };
+        let rate = if damping > 0.0 { rate_at(&**relation, at, gradients) } else { Vec3::ZERO };
         -(kept + relation.value(at.positions, at.time) * stiffness + rate * damping)
     }
 
@@ -97,32 +102,33 @@ impl Constraints {
     }
 
     /// Calls `visit(rows, gradients)` for each relation of an augmented Lagrangian.
-    fn for_augmented(&self, at: &Configuration, mut visit: impl FnMut(&Augmented, &[u32], &[Mat3])) {
+    fn for_augmented(
+        &self,
+        at: &Configuration,
+        scratch: &mut Scratch,
+        mut visit: impl FnMut(&Augmented, &[u32], &[Mat3]),
+    ) {
         let Keeping::Augmented(augmented) = &self.keeping else { return };
-        let mut gradients = Vec::new();
+        let gradients = gradients_of(scratch);
         for relation in &self.relations {
             gradients.clear();
-            relation.add_gradients(at.positions, at.time, &mut gradients);
-            visit(augmented, relation.rows(), &gradients);
+            relation.add_gradients(at.positions, at.time, gradients);
+            visit(augmented, relation.rows(), gradients);
         }
     }
 }
 
-/// `ġ = J v + ∂g/∂t` of the masses, as they move.
-fn rate(
-    relation: &dyn Relation,
-    (positions, velocities, time): (&[Vec3], &[Vec3], f64),
-    gradients: &mut Vec<Mat3>,
-) -> Vec3 {
-    gradients.clear();
-    relation.add_gradients(positions, time, gradients);
-    let rows = relation.rows().iter().zip(gradients.iter());
-    let moved: Vec3 = rows.map(|(row, gradient)| *gradient * velocities[*row as usize]).sum();
-    moved + relation.time_rate(positions, time)
+fn gradients_of(scratch: &mut Scratch) -> &mut Vec<Mat3> {
+    scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
 }
 
-fn rate_at(relation: &dyn Relation, at: &Configuration) -> Vec3 {
-    rate(relation, (at.positions, at.velocities, at.time), &mut Vec::new())
+/// `ġ = J v + ∂g/∂t` of the masses, as they move; gradients are scratch.
+fn rate_at(relation: &dyn Relation, at: &Configuration, gradients: &mut Vec<Mat3>) -> Vec3 {
+    gradients.clear();
+    relation.add_gradients(at.positions, at.time, gradients);
+    let rows = relation.rows().iter().zip(gradients.iter());
+    let moved: Vec3 = rows.map(|(row, gradient)| *gradient * at.velocities[*row as usize]).sum();
+    moved + relation.time_rate(at.positions, at.time)
 }
 
 impl ConstraintSet for Constraints {
@@ -146,8 +152,8 @@ impl ConstraintSet for Constraints {
         self.relations[relation].add_gradients(positions, time, gradients);
     }
 
-    fn rate(&self, relation: usize, positions: &[Vec3], velocities: &[Vec3], time: f64) -> Vec3 {
-        rate(&*self.relations[relation], (positions, velocities, time), &mut Vec::new())
+    fn time_rate(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3 {
+        self.relations[relation].time_rate(positions, time)
     }
 
     fn magnitude(&self, relation: usize, positions: &[Vec3], time: f64) -> Vec3 {
@@ -180,6 +186,10 @@ impl ConstraintSet for Constraints {
             Keeping::Yielding { limit } => Some(limit),
             Keeping::Exact { .. } | Keeping::Augmented(_) => None,
         }
+    }
+
+    fn is_lost_between(&self, relation: usize, from: &[Vec3], to: &[Vec3]) -> Option<&'static str> {
+        self.relations[relation].is_lost_between(from, to)
     }
 
     fn describe(&self, relation: usize) -> String {
@@ -234,17 +244,21 @@ impl Force for Constraints {
         Energy { stored, dissipated: -at.memory[0] }
     }
 
-    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
+    fn new_scratch(&self) -> Scratch {
+        Box::new(Vec::<Mat3>::new())
+    }
+
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        let gradients = gradients_of(scratch);
         if self.constraint_set().is_some() {
-            binding::add_forces(self, at, out);
+            binding::add_forces(self, at, gradients, out);
             return;
         }
-        let mut gradients = Vec::new();
         for (index, relation) in self.relations.iter().enumerate() {
-            let multiplier = self.multiplier(index, at);
+            let multiplier = self.multiplier_by(index, at, gradients);
             gradients.clear();
-            relation.add_gradients(at.positions, at.time, &mut gradients);
-            for (row, gradient) in relation.rows().iter().zip(&gradients) {
+            relation.add_gradients(at.positions, at.time, gradients);
+            for (row, gradient) in relation.rows().iter().zip(gradients.iter()) {
                 out[*row as usize] += gradient.transpose_apply(multiplier);
             }
         }
@@ -256,10 +270,10 @@ impl Force for Constraints {
         at: &Configuration,
         weights: TangentWeights,
         delta: &[Vec3],
-        _scratch: &mut Scratch,
+        scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.for_augmented(at, |Augmented { stiffness, damping, .. }, rows, gradients| {
+        self.for_augmented(at, scratch, |Augmented { stiffness, damping, .. }, rows, gradients| {
             let rows = || rows.iter().zip(gradients);
             let change: Vec3 = rows().map(|(row, gradient)| *gradient * delta[*row as usize]).sum();
             let push = change * -(weights.position * stiffness + weights.velocity * damping);
@@ -277,10 +291,10 @@ impl Force for Constraints {
         &self,
         at: &Configuration,
         weights: TangentWeights,
-        _scratch: &mut Scratch,
+        scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.for_augmented(at, |Augmented { stiffness, damping, .. }, rows, gradients| {
+        self.for_augmented(at, scratch, |Augmented { stiffness, damping, .. }, rows, gradients| {
             let scale = -(weights.position * stiffness + weights.velocity * damping);
             for (row, of_row) in rows.iter().zip(gradients) {
                 for (column, of_column) in rows.iter().zip(gradients) {
@@ -296,8 +310,10 @@ impl Force for Constraints {
         let Keeping::Augmented(Augmented { stiffness, damping, rate: growth }) = self.keeping else {
             return;
         };
+        let mut gradients = Vec::new();
         for (index, relation) in self.relations.iter().enumerate() {
-            let (rate, kept) = (rate_at(&**relation, at), binding::multiplier(at.memory, index));
+            let (rate, kept) =
+                (rate_at(&**relation, at, &mut gradients), binding::multiplier(at.memory, index));
             let (value, led) =
                 (relation.value(at.positions, at.time), relation.time_rate(at.positions, at.time));
             memory[0] -= timestep * (kept + rate * damping).dot(rate - led);

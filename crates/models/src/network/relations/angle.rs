@@ -98,6 +98,16 @@ impl Relation for Angle {
         Vec3::X * (PI + self.angle.evaluate(&[time]).abs())
     }
 
+    fn is_lost_between(&self, from: &[Vec3], to: &[Vec3]) -> Option<&'static str> {
+        let across = |positions: &[Vec3]| {
+            let Legs { u, w, .. } = self.legs(positions);
+            u.cross(w)
+        };
+        (self.axis.is_none() && across(from).dot(across(to)) <= 0.0).then_some(
+            "gives way until its segments are in one line, where no direction opens it: tell its `axis`",
+        )
+    }
+
     fn describe(&self) -> String {
         "an angle".to_owned()
     }

@@ -108,13 +108,13 @@ impl Relation for Volume {
 
     fn add_gradients(&self, positions: &[Vec3], _time: f64, gradients: &mut Vec<Mat3>) {
         let at = self.relative_places(positions);
-        let mut by = vec![Vec3::ZERO; self.rows.len()];
+        let first = gradients.len();
+        gradients.resize(first + self.rows.len(), Mat3::ZERO);
         for [a, b, c] in &self.triangles {
             for [one, next, last] in [[a, b, c], [b, c, a], [c, a, b]] {
-                by[*one as usize] += at(*next).cross(at(*last)) / 6.0;
+                gradients[first + *one as usize] += first_row(at(*next).cross(at(*last)) / 6.0);
             }
         }
-        gradients.extend(by.into_iter().map(first_row));
     }
 
     fn time_rate(&self, _positions: &[Vec3], time: f64) -> Vec3 {

@@ -59,6 +59,11 @@ pub trait Relation: Send + Sync + Debug {
         None
     }
 
+    /// What of it has no meaning any more where masses went from some places to others, in words that go on from what it is; it has a cusp between.
+    fn is_lost_between(&self, _from: &[Vec3], _to: &[Vec3]) -> Option<&'static str> {
+        None
+    }
+
     /// How fast what it holds its mass to moves [m/s].
     fn surface_velocity(&self, _time: f64) -> Vec3 {
         Vec3::ZERO

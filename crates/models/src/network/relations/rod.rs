@@ -42,6 +42,12 @@ impl Relation for Rod {
         Vec3::X * self.length
     }
 
+    fn is_lost_between(&self, from: &[Vec3], to: &[Vec3]) -> Option<&'static str> {
+        (self.apart(from).dot(self.apart(to)) <= 0.0).then_some(
+            "gives way until its ends meet, where it has no direction: keep them apart, or let it bear more",
+        )
+    }
+
     fn ends(&self) -> Option<[u32; 2]> {
         Some(self.ends)
     }

@@ -245,7 +245,7 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
             "yields_at",
             "",
             Range::POSITIVE,
-            "of a rod [N], an angle [N m], an area [N/m] or a volume [Pa]: the most that keeps it; beyond that it gives way, and stays as it was moulded",
+            "of a rod [N], an angle [N m], an area [N/m] or a volume [Pa], in which it may be written: the most that keeps it; beyond that it gives way, and stays as it was moulded",
         ),
         Key::new("augmented", Shape::Table(&AUGMENTED), "kept by an augmented Lagrangian, and not exactly"),
     ],
@@ -352,7 +352,7 @@ impl ConstraintSpec {
             _ => Sense::AtLeast,
         });
         check_sense(kind.as_ref(), sense, reader, &refuse);
-        check_yielding(kind.as_ref(), reader, &refuse);
+        let yields_at = limit(kind.as_ref(), reader, &refuse);
         let law =
             ImpactLaw { restitution: reader.number("restitution"), friction: reader.number("friction") };
         let kind_site = written.first().map_or_else(|| reader.site(), |kind| reader.site_of(kind));
@@ -362,7 +362,7 @@ impl ConstraintSpec {
             kind,
             time: reader.number("time"),
             augmented,
-            yields_at: reader.maybe_number("yields_at"),
+            yields_at,
             sense,
             law,
             radius: reader.number("radius"),
@@ -424,22 +424,9 @@ fn check_sense(
     }
 }
 
-/// Refuses yielding of what has several multipliers, and what else would say how a constraint is kept.
-fn check_yielding(kind: Option<&ConstraintKind>, reader: &Reader, refuse: &impl Fn(&str, &str, &str)) {
-    let Some(kind) = kind.filter(|_| reader.has("yields_at")) else { return };
-    if !matches!(
-        kind,
-        ConstraintKind::Rod(..)
-            | ConstraintKind::Angle(..)
-            | ConstraintKind::Area(..)
-            | ConstraintKind::Volume(..)
-    ) {
-        refuse(
-            "yields_at",
-            "this constraint does not give way",
-            "`yields_at` of a rod, an angle, an area or a volume",
-        );
-    }
+/// What a constraint bears, in the unit of its multiplier; refuses limits of what has several of these, and what else would say how a constraint is kept.
+fn limit(kind: Option<&ConstraintKind>, reader: &Reader, refuse: &impl Fn(&str, &str, &str)) -> Option<f64> {
+    let kind = kind.filter(|_| reader.has("yields_at"))?;
     for key in reader.written(&["time", "augmented", "sense"]) {
         refuse(
             key,
@@ -447,6 +434,21 @@ fn check_yielding(kind: Option<&ConstraintKind>, reader: &Reader, refuse: &impl 
             "`yields_at`, or no such key",
         );
     }
+    let unit = match kind {
+        ConstraintKind::Rod(..) => "N",
+        ConstraintKind::Angle(..) => "N m",
+        ConstraintKind::Area(..) => "N/m",
+        ConstraintKind::Volume(..) => "Pa",
+        _ => {
+            refuse(
+                "yields_at",
+                "this constraint does not give way",
+                "`yields_at` of a rod, an angle, an area or a volume",
+            );
+            return None;
+        }
+    };
+    reader.maybe_number_in("yields_at", unit)
 }
 
 impl ConstraintKind {
