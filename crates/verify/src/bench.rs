@@ -14,6 +14,7 @@ mod laws;
 mod levels;
 mod links;
 mod resolution;
+mod rigid;
 mod skins;
 mod startup;
 mod stretched;
@@ -192,6 +193,11 @@ pub const BENCHES: &[Bench] = &[
         name: "balls_1m_peak",
         what: "most memory that the program holds for a run of a million such balls, with frames and picture [MB]",
         run: |effort| balls::peak("balls_1m_peak", effort),
+    },
+    Bench {
+        name: "rigid_stack",
+        what: "a period of five bricks on each other whose contacts and friction are solved for, standing and sliding apart, one thread [us]",
+        run: |effort| rigid::stack("rigid_stack", effort),
     },
     Bench {
         name: "contours_500",
