@@ -3,12 +3,14 @@
 
 use std::sync::Arc;
 
-use souple_engine::{Configuration, Force, TangentWeights};
-use souple_math::{Vec3, exponential};
+use souple_engine::{Configuration, Force, Motion, TangentWeights};
+use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh};
+use souple_models::loads::RigidMotion;
 use souple_models::materials;
 use souple_models::solids::{
-    Bending, BendingDescription, BendingError, Plate, Rigidities, plane_axes, rigidity_of_law,
+    Bending, BendingDescription, BendingError, Clamp, Plate, Quadrature, Rigidities, Section,
+    SolidDescription, border_edges, lies_across, plane_axes, rigidity_of_law,
 };
 use souple_solve::{LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
@@ -39,20 +41,48 @@ fn dome() -> Mesh {
     mesh
 }
 
-fn bending(mesh: &Mesh, rigidities: Rigidities, natural: Vec3, clamped: &[bool]) -> Bending {
-    let plate = Plate { rigidity: rigidities.matrix(), first: Vec3::new(1.0, 0.3, 0.0), natural };
-    let plates = vec![plate; mesh.cell_count()];
-    Bending::new(&BendingDescription { name: "sheet".into(), mesh, first_row: 0, plates: &plates, clamped })
-        .unwrap()
+fn solid(mesh: &Mesh) -> SolidDescription<'_> {
+    SolidDescription {
+        name: "sheet".into(),
+        mesh,
+        first_row: 0,
+        materials: &[],
+        material_of_cell: &[],
+        axes: &[],
+        quadrature: Quadrature::Default,
+        section: Section::Membrane { thickness: 1.0 },
+    }
 }
 
-fn at(positions: &[Vec3]) -> Configuration<'_> {
+fn plate(rigidities: Rigidities, natural: Vec3) -> Plate {
+    let first = Vec3::new(1.0, 0.3, 0.0);
+    Plate { rigidity: rigidities.matrix(), first, natural, viscosity: Mat3::ZERO }
+}
+
+fn made(mesh: &Mesh, plate: Plate, clamps: &[Clamp]) -> Bending {
+    let plates = vec![plate; mesh.cell_count()];
+    Bending::new(&solid(mesh), &BendingDescription { plates: &plates, clamps }).unwrap()
+}
+
+fn bending(mesh: &Mesh, rigidities: Rigidities, natural: Vec3, clamps: &[Clamp]) -> Bending {
+    made(mesh, plate(rigidities, natural), clamps)
+}
+
+/// Edges of the border with both ends where `is_inside` says, as something leads them.
+fn clamps(mesh: &Mesh, leader: Option<Arc<dyn Motion>>, is_inside: impl Fn(&Vec3) -> bool) -> Vec<Clamp> {
+    let border = border_edges(mesh).unwrap();
+    let is_clamped = |edge: &[u32; 2]| edge.iter().all(|point| is_inside(&mesh.points[*point as usize]));
+    let edges = border.iter().map(|border| border.edge).filter(is_clamped);
+    edges.map(|edge| Clamp { edge, leader: leader.clone() }).collect()
+}
+
+fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> Configuration<'a> {
     Configuration {
         positions,
-        velocities: &[],
+        velocities,
         time: 0.0,
         load: 1.0,
-        memory: &[],
+        memory,
         pairs: &[],
         kept: souple_engine::KeptRef::default(),
         driven: &[],
@@ -60,13 +90,23 @@ fn at(positions: &[Vec3]) -> Configuration<'_> {
     }
 }
 
-fn energy(force: &Bending, positions: &[Vec3]) -> f64 {
-    force.energy(&at(positions), &mut force.new_scratch()).stored
+fn memory(force: &dyn Force) -> Vec<f64> {
+    let mut memory = vec![0.0; force.memory_len()];
+    force.initial_memory(&mut memory);
+    memory
 }
 
-fn forces(force: &Bending, positions: &[Vec3]) -> Vec<Vec3> {
+fn energy(force: &Bending, positions: &[Vec3]) -> f64 {
+    force.energy(&at(positions, &[], &memory(force)), &mut force.new_scratch()).stored
+}
+
+fn forces(force: &dyn Force, positions: &[Vec3]) -> Vec<Vec3> {
+    forces_moving(force, positions, &[])
+}
+
+fn forces_moving(force: &dyn Force, positions: &[Vec3], velocities: &[Vec3]) -> Vec<Vec3> {
     let mut out = vec![Vec3::ZERO; positions.len()];
-    force.add_force(&at(positions), &mut force.new_scratch(), &mut out);
+    force.add_force(&at(positions, velocities, &memory(force)), &mut force.new_scratch(), &mut out);
     out
 }
 
@@ -90,16 +130,16 @@ fn moved(positions: &[Vec3], direction: &[Vec3], step: f64) -> Vec<Vec3> {
 /// Shells that differ in all that one can: flat or curved, of two axes, with a curvature of their own, clamped.
 fn shells() -> Vec<(&'static str, Mesh, Bending)> {
     let (flat, curved) = (sheet([4, 3], 0.2), dome());
-    let none = vec![false; flat.points.len()];
-    let left: Vec<bool> = flat.points.iter().map(|p| p.x < 1e-9).collect();
+    let left = clamps(&flat, None, |p| p.x < 1e-9);
     let natural = Vec3::new(0.8, -0.3, 0.5);
     let made = [
-        ("flat", bending(&flat, ISOTROPIC, Vec3::ZERO, &none)),
-        ("curling", bending(&flat, GRAINED, natural, &none)),
+        ("flat", bending(&flat, ISOTROPIC, Vec3::ZERO, &[])),
+        ("curling", bending(&flat, GRAINED, natural, &[])),
         ("clamped", bending(&flat, GRAINED, Vec3::ZERO, &left)),
     ];
     let mut all: Vec<_> = made.into_iter().map(|(name, force)| (name, flat.clone(), force)).collect();
-    for (name, clamped) in [("dome", &none), ("clamped dome", &left)] {
+    let left = clamps(&curved, None, |p| p.x < 1e-9);
+    for (name, clamped) in [("dome", &[][..]), ("clamped dome", &left)] {
         let force = bending(&curved, GRAINED, Vec3::ZERO, clamped);
         all.push((name, curved.clone(), force));
     }
@@ -123,7 +163,14 @@ fn derivatives_are_exact() {
         let weights = TangentWeights { position: 1.0, velocity: 0.0 };
         let product = |direction: &[Vec3]| {
             let mut out = vec![Vec3::ZERO; x.len()];
-            force.add_differential(&at(&x), weights, direction, &mut force.new_scratch(), &mut out);
+            let memory = memory(&force);
+            force.add_differential(
+                &at(&x, &[], &memory),
+                weights,
+                direction,
+                &mut force.new_scratch(),
+                &mut out,
+            );
             out
         };
         let exact = product(&direction);
@@ -139,11 +186,12 @@ fn derivatives_are_exact() {
         let pattern = Arc::new(builder.build().unwrap());
         let blocks = |definite: bool| {
             let mut matrix = souple_solve::BlockMatrix::zeros(Arc::clone(&pattern));
-            let mut scratch = force.new_scratch();
+            let (mut scratch, memory) = (force.new_scratch(), memory(&force));
+            let at = at(&x, &[], &memory);
             if definite {
-                assert!(force.add_definite_blocks(&at(&x), weights, &mut scratch, &mut matrix), "{name}");
+                assert!(force.add_definite_blocks(&at, weights, &mut scratch, &mut matrix), "{name}");
             } else {
-                force.add_blocks(&at(&x), weights, &mut scratch, &mut matrix);
+                force.add_blocks(&at, weights, &mut scratch, &mut matrix);
             }
             let mut out = vec![Vec3::ZERO; x.len()];
             matrix.apply(&direction, &mut out);
@@ -187,8 +235,7 @@ fn forces_balance_and_rigid_motion_is_free() {
 #[test]
 fn constant_curvature_is_in_balance_on_crooked_meshes() {
     let mesh = sheet([12, 10], 0.2);
-    let none = vec![false; mesh.points.len()];
-    let force = bending(&mesh, GRAINED, Vec3::ZERO, &none);
+    let force = bending(&mesh, GRAINED, Vec3::ZERO, &[]);
     // a triangle hears of two rows of triangles around it, and a point of those that hear of it
     let depth = 3.6 / 12.0;
     let is_inner = |p: &Vec3| p.x.min(1.0 - p.x).min(p.y).min(0.8 - p.y) > depth;
@@ -221,19 +268,10 @@ fn constant_curvature_is_in_balance_on_crooked_meshes() {
 #[test]
 fn natural_curvature_is_a_circle_towards_the_normals() {
     let mesh = sheet([24, 2], 0.0);
-    let none = vec![false; mesh.points.len()];
     let plain = Rigidities { along: 2.0, across: 2.0, coupling: 0.0, twist: 1.0 };
     let wanted = 1.5;
-    let plate = Plate { rigidity: plain.matrix(), first: Vec3::X, natural: Vec3::new(wanted, 0.0, 0.0) };
-    let plates = vec![plate; mesh.cell_count()];
-    let description = BendingDescription {
-        name: "strip".into(),
-        mesh: &mesh,
-        first_row: 0,
-        plates: &plates,
-        clamped: &none,
-    };
-    let force = Bending::new(&description).unwrap();
+    let natural = Vec3::new(wanted, 0.0, 0.0);
+    let force = made(&mesh, Plate { first: Vec3::X, ..plate(plain, natural) }, &[]);
     let bent = |curvature: f64| {
         let circle = |p: &Vec3| {
             let angle = curvature * p.x;
@@ -274,16 +312,14 @@ fn rigidity_is_that_of_the_law() {
 /// What is no surface of triangles with two sides is refused by name.
 #[test]
 fn refuses_what_is_no_surface() {
-    let plate = Plate { rigidity: ISOTROPIC.matrix(), first: Vec3::X, natural: Vec3::ZERO };
+    let plate = plate(ISOTROPIC, Vec3::ZERO);
     let refused = |points: &[[f64; 2]], triangles: &[[u32; 3]]| {
         let points = points.iter().map(|[x, y]| Vec3::new(*x, *y, 0.0)).collect();
         let mut block = souple_mesh::CellBlock::new(ElementKind::Tri3);
         triangles.iter().for_each(|nodes| block.nodes.extend(nodes));
         let mesh = Mesh { points, blocks: vec![block], ..Mesh::default() };
         let plates = vec![plate; triangles.len()];
-        let description =
-            BendingDescription { name: "x".into(), mesh: &mesh, first_row: 0, plates: &plates, clamped: &[] };
-        Bending::new(&description).err()
+        Bending::new(&solid(&mesh), &BendingDescription { plates: &plates, clamps: &[] }).err()
     };
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.3, -1.0], [2.0, 2.0]];
     assert_eq!(refused(&corners, &[[0, 1, 2]]), Some(BendingError::Nowhere));
@@ -304,11 +340,184 @@ fn refuses_what_is_no_surface() {
             .with("element", Value::Text("quad4")),
     )
     .unwrap();
-    let description =
-        BendingDescription { name: "x".into(), mesh: &quads, first_row: 0, plates: &[plate], clamped: &[] };
-    assert_eq!(
-        Bending::new(&description).err(),
-        Some(BendingError::Kind { cell: 0, kind: ElementKind::Quad4 })
-    );
+    let refused = |mesh: &Mesh, clamps: &[Clamp]| {
+        let plates = vec![plate; mesh.cell_count()];
+        Bending::new(&solid(mesh), &BendingDescription { plates: &plates, clamps }).err()
+    };
+    assert_eq!(refused(&quads, &[]), Some(BendingError::Kind { cell: 0, kind: ElementKind::Quad4 }));
+    assert!(border_edges(&quads).is_err());
+    let mesh = sheet([2, 2], 0.0);
+    let inside = |p: &Vec3| (p.x - 0.5).abs() < 0.1 && p.y < 0.5;
+    let [a, b] = [0, 1].map(|index| (0..9).filter(|p| inside(&mesh.points[*p as usize])).nth(index).unwrap());
+    let clamp = Clamp { edge: [b, a], leader: None };
+    assert_eq!(refused(&mesh, &[clamp]), Some(BendingError::Inside { edge: [a, b] }));
     assert!(ISOTROPIC.are_definite() && !Rigidities { coupling: 3.0, ..ISOTROPIC }.are_definite());
+}
+
+/// A surface of the constant curvatures `κ` [1/m], of small slopes.
+fn curved(mesh: &Mesh, [bending, across, twist]: [f64; 3]) -> Vec<Vec3> {
+    let height = |p: &Vec3| 0.5 * bending * p.x * p.x + 0.5 * across * p.y * p.y + twist * p.x * p.y;
+    mesh.points.iter().map(|p| *p + Vec3::Z * height(p)).collect()
+}
+
+/// A disc of crooked triangles that wants to be curved stores nothing where it is, up to its rim: the energy left there, of slopes of 1e-4
+/// and of rounding, is nothing beside that of the flat one.
+#[test]
+fn natural_curvature_is_taken_up_to_free_rims() {
+    // what of a crooked sheet is in a circle, its rim as crooked as it comes
+    let whole = sheet([12, 10], 0.2);
+    let is_inside = |node: &u32| (whole.points[*node as usize] - Vec3::new(0.5, 0.4, 0.0)).length() < 0.38;
+    let mut block = souple_mesh::CellBlock::new(ElementKind::Tri3);
+    for cell in whole.cells().filter(|cell| cell.nodes.iter().all(is_inside)) {
+        block.nodes.extend(cell.nodes);
+    }
+    let disc = Mesh { points: whole.points.clone(), blocks: vec![block], ..Mesh::default() };
+    for mesh in [disc, sheet([6, 5], 0.2)] {
+        for rigidities in [ISOTROPIC, GRAINED] {
+            for wanted in [[2e-4, 0.0, 0.0], [0.0, 2e-4, 0.0], [1e-4, -2e-4, 3e-4]] {
+                let [bending, across, twist] = wanted;
+                let natural = Vec3::new(bending, across, 2.0 * twist);
+                let force = made(&mesh, Plate { first: Vec3::X, ..plate(rigidities, natural) }, &[]);
+                let (flat, taken) = (energy(&force, &mesh.points), energy(&force, &curved(&mesh, wanted)));
+                // curvatures are off by the square of slopes of 3e-4, and by rounding of 1e-16 m over 1e-7 m of height
+                assert!(taken <= 1e-12 * flat, "{wanted:?}: {taken:e} of {flat:e}");
+                // where nothing was told of its free edges, some cells of a hundred, it would be 1e-3
+                assert!(energy(&force, &curved(&mesh, wanted.map(|of| 1.01 * of))) > 1e-5 * flat);
+            }
+        }
+    }
+}
+
+/// A crease that was folded nearly shut, 3.0 rad, and gives way a little beyond: its angle goes on, and so does its energy.
+#[test]
+fn angles_go_on_beyond_half_a_turn() {
+    let shut = |angle: f64| {
+        let (sine, cosine) = angle.sin_cos();
+        vec![Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(-cosine, 0.0, sine)]
+    };
+    let mut block = souple_mesh::CellBlock::new(ElementKind::Tri3);
+    block.nodes.extend([0, 2, 1, 1, 3, 0]);
+    let crease = |angle: f64| Mesh { points: shut(angle), blocks: vec![block.clone()], ..Mesh::default() };
+    for rest in [3.0, -3.0] {
+        let mesh = crease(rest);
+        let force = bending(&mesh, ISOTROPIC, Vec3::ZERO, &[]);
+        let mut memory = memory(&force);
+        assert!((memory[0] - rest).abs() < 1e-12, "{}", memory[0]);
+        let stored = |memory: &[f64], angle: f64| {
+            force.energy(&at(&shut(angle), &[], memory), &mut force.new_scratch()).stored
+        };
+        let of_square = stored(&memory, rest - 0.1 * rest.signum()) / 0.01;
+        // by steps of a tenth, through half a turn and on to one and a half
+        for step in 1..60 {
+            let turned = 0.1 * f64::from(step);
+            let x = shut(rest + turned * rest.signum());
+            let measured = force.energy(&at(&x, &[], &memory), &mut force.new_scratch()).stored;
+            assert!((measured - of_square * turned * turned).abs() <= 1e-9 * measured, "{rest} {turned}");
+            force.advance_memory(&at(&x, &[], &memory.clone()), 1e-3, &mut memory, &mut []);
+        }
+    }
+}
+
+/// A clamp whose rim is led in a turn goes with it: a rigid turn of the whole stores nothing, and slopes of what it stores are those of the
+/// plane as it stands.
+#[test]
+fn clamps_turn_with_what_leads_them() {
+    #[derive(Debug)]
+    struct Turning(Vec3);
+    impl Motion for Turning {
+        fn offset(&self, _start: Vec3, time: f64) -> Vec3 {
+            self.0 * (0.3 + time)
+        }
+        fn velocity(&self, _start: Vec3, _time: f64) -> Vec3 {
+            self.0
+        }
+    }
+    let axis = Vec3::new(0.4, 1.0, -0.7);
+    let rotation: Arc<dyn Motion> = Arc::new(Turning(axis));
+    let leader: Arc<dyn Motion> =
+        Arc::new(RigidMotion { rotation: Some(rotation), ..RigidMotion::default() });
+    for mesh in [sheet([4, 3], 0.2), dome()] {
+        let clamps = clamps(&mesh, Some(Arc::clone(&leader)), |p| p.x < 1e-9 || p.y < 1e-9);
+        let viscous = Plate { viscosity: GRAINED.matrix(), ..plate(GRAINED, Vec3::ZERO) };
+        let force = made(&mesh, viscous, &clamps);
+        let damping = force.damping("damping".into()).unwrap();
+        let turned: Vec<Vec3> = mesh.points.iter().map(|p| exponential(axis * 0.3) * *p).collect();
+        let bent = energy(&force, &mesh.points);
+        assert!(bent > 1e-3 && energy(&force, &turned) <= 1e-20 * bent, "{bent}");
+        // and turns on without a force of damping
+        let spin: Vec<Vec3> = turned.iter().map(|p| axis.cross(*p)).collect();
+        let still = vec![Vec3::ZERO; turned.len()];
+        let resisted = norm(&forces_moving(&damping, &turned, &still));
+        let carried = norm(&forces_moving(&damping, &turned, &spin));
+        assert!(resisted > 1e-3 && carried <= 1e-11 * resisted, "{carried:e} {resisted:e}");
+    }
+}
+
+/// A constant rate of curvature has the moments of the viscosity: none in rigid motion, slopes of forces are exact, blocks say the same, and
+/// the heat is the power of the forces.
+#[test]
+fn damping_is_of_the_rate_of_the_curvature() {
+    let mesh = dome();
+    let left = clamps(&mesh, None, |p| p.x < 1e-9);
+    let viscosity = Rigidities::of_viscosity(3.0, 2.0).matrix();
+    // 2 η h³/12 along, η h³/12 of twist
+    assert_eq!(viscosity, Mat3::from_diagonal(Vec3::new(4.0, 4.0, 2.0)));
+    for clamps in [&[][..], &left] {
+        let plate = Plate { viscosity, ..plate(GRAINED, Vec3::new(0.2, 0.1, 0.3)) };
+        let bending = made(&mesh, plate, clamps);
+        let force = bending.damping("damping".into()).unwrap();
+        assert!(
+            made(&mesh, Plate { viscosity: Mat3::ZERO, ..plate }, clamps).damping(String::new()).is_none()
+        );
+        let x = moved(&mesh.points, &directions(mesh.points.len(), 3.0), 0.05);
+        let (v, direction) = (directions(x.len(), 1.0), directions(x.len(), 0.0));
+        let f = forces_moving(&force, &x, &v);
+        let scale = norm(&f);
+        if clamps.is_empty() {
+            let rigid: Vec<Vec3> = x.iter().map(|p| Vec3::new(0.3, -1.0, 0.7).cross(*p) + Vec3::X).collect();
+            assert!(norm(&forces_moving(&force, &x, &rigid)) <= 1e-12 * scale);
+        }
+        let step = 1e-6;
+        for weights in [[1.0, 0.0], [0.0, 1.0], [0.7, -1.3]] {
+            let [position, velocity] = weights;
+            let weights = TangentWeights { position, velocity };
+            let memory = memory(&force);
+            let mut exact = vec![Vec3::ZERO; x.len()];
+            force.add_differential(
+                &at(&x, &v, &memory),
+                weights,
+                &direction,
+                &mut force.new_scratch(),
+                &mut exact,
+            );
+            let beside = |step: f64| {
+                let (x, v) = (moved(&x, &direction, position * step), moved(&v, &direction, velocity * step));
+                forces_moving(&force, &x, &v)
+            };
+            let (ahead, behind) = (beside(step), beside(-step));
+            let gap: Vec<Vec3> =
+                (0..x.len()).map(|i| exact[i] - (ahead[i] - behind[i]) * (0.5 / step)).collect();
+            // as for the stiffness
+            assert!(norm(&gap) <= 1e-7 * norm(&exact), "{weights:?}: {:e}", norm(&gap) / norm(&exact));
+            let mut builder = PatternBuilder::new(x.len());
+            force.visit_cliques(&[], &mut |rows| builder.add_clique(rows).unwrap());
+            let mut matrix = souple_solve::BlockMatrix::zeros(Arc::new(builder.build().unwrap()));
+            force.add_blocks(&at(&x, &v, &memory), weights, &mut force.new_scratch(), &mut matrix);
+            let mut out = vec![Vec3::ZERO; x.len()];
+            matrix.apply(&direction, &mut out);
+            let gap: Vec<Vec3> = out.iter().zip(&exact).map(|(a, b)| *a - *b).collect();
+            assert!(norm(&gap) <= 1e-12 * norm(&exact), "{weights:?}: blocks differ by {:e}", norm(&gap));
+        }
+        let mut heat = [0.0];
+        force.advance_memory(&at(&x, &v, &[0.0]), 0.01, &mut heat, &mut []);
+        assert!((heat[0] + 0.01 * dot(&f, &v)).abs() <= 1e-12 * heat[0], "{} {}", heat[0], dot(&f, &v));
+    }
+}
+
+/// A direction straight across a triangle is none in its plane.
+#[test]
+fn directions_across_are_told() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::new(0.2, 1.0, 0.0)];
+    assert!(lies_across(corners, Vec3::Z) && !lies_across(corners, Vec3::new(1e-3, 0.0, 1.0)));
+    assert!(ISOTROPIC.are_isotropic() && !GRAINED.are_isotropic());
 }

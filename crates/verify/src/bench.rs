@@ -330,6 +330,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| laws::forces("tet4_forces", "tet4", 12, laws::Wanted::Steps, effort),
     },
     Bench {
+        name: "shell_forces",
+        what: "forces of triangles that resist bending, of 32,000 cells, one thread [elements/s], and over those of their membrane [x membrane]",
+        run: |effort| laws::shells("shell_forces", effort),
+    },
+    Bench {
         name: "green_over_cauchy",
         what: "forces of tetrahedra by Green and Lagrange's strain over those by Cauchy's, one thread [x Cauchy] (V-01)",
         run: |effort| laws::green_over_cauchy("green_over_cauchy", effort),

@@ -63,7 +63,8 @@ use turned::{AXES_LEN, TurnedRows, TurnedSamples};
 
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use bending::{
-    Bending, BendingDescription, BendingError, HeldSlope, Plate, Rigidities, plane_axes, rigidity_of_law,
+    Bending, BendingDamping, BendingDescription, BendingError, BorderEdge, Clamp, HeldSlope, Plate,
+    Rigidities, border_edges, lies_across, plane_axes, rigidity_of_law,
 };
 pub use difference::DifferencedForce;
 pub(crate) use formulation::four_loop_count;

@@ -22,7 +22,7 @@ use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
 use super::reduced::{self, PlacedReduced};
 use super::{
-    Draft, axes, bending, frames, hanging, incompressible, inertial, levels, material_fields, modes, network,
+    Draft, axes, frames, hanging, incompressible, inertial, levels, material_fields, modes, network,
     octree, section, shape, start, tissue,
 };
 use crate::diagnostic::{Code, Site};
@@ -269,7 +269,6 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             continue;
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
-        let bending = bending::force(draft, body);
         check_together(draft, body);
         incompressible::check(draft, body);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
@@ -297,7 +296,6 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         if let Err(error) = add_solid(body.spec, description, kept, &mut forces) {
             report(draft, body.spec, &error);
         }
-        forces.extend(bending);
     }
     mass.seal();
     add_outer_forces(draft, index, &mass, &kinematics, &mut forces);

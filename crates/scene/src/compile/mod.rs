@@ -147,6 +147,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::add_controls(&mut draft);
     boundary::add_loads(&mut draft);
     pins::add(&mut draft);
+    bending::add(&mut draft);
     skins::add(&mut draft);
     levels::add_dresses(&mut draft);
     marks::add(&mut draft);

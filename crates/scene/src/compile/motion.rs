@@ -150,6 +150,15 @@ fn first_jump<T>(
 pub struct AxisMotions(pub [Option<Arc<dyn Motion>>; 3]);
 
 impl AxisMotions {
+    /// How they lead a point: all axes by one motion where it is the same, which tells how what it leads turns; `None` where all stay.
+    pub fn into_one(self) -> Option<Arc<dyn Motion>> {
+        match &self.0 {
+            [None, None, None] => None,
+            [Some(x), Some(y), Some(z)] if Arc::ptr_eq(x, y) && Arc::ptr_eq(x, z) => Some(Arc::clone(x)),
+            _ => Some(Arc::new(self)),
+        }
+    }
+
     fn by_axis(&self, of: impl Fn(&dyn Motion) -> Vec3) -> Vec3 {
         Vec3::from_array(
             [0, 1, 2].map(|axis: usize| self.0[axis].as_deref().map_or(0.0, |motion| of(motion)[axis])),

@@ -84,8 +84,7 @@ pub fn add(draft: &mut Draft) {
             let is_held = |axis: usize| hold.by[axis].is_some() || (is_plane && axis == 2);
             let free = [0, 1, 2].map(|axis| if is_held(axis) { 0.0 } else { 1.0 });
             let motions = hold.by.map(|led| led.and_then(|led| led.motion));
-            let leads = motions.iter().any(Option::is_some);
-            let motion = leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>);
+            let motion = AxisMotions(motions).into_one();
             let block = system.kinematics.block_of(row);
             let free = Mat3::from_diagonal(Vec3::from_array(free));
             added.push((body.system, Constraint { free, motion, ..Constraint::pin(block, start) }));
@@ -112,8 +111,7 @@ fn held_by_springs(
     for (point, Hold { by }) in holds {
         let axes = [0, 1, 2].map(|axis: usize| by[axis].is_some());
         let motions = by.map(|led| led.and_then(|led| led.motion));
-        let leads = motions.iter().any(Option::is_some);
-        held.push((point, axes, leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>)));
+        held.push((point, axes, AxisMotions(motions).into_one()));
     }
     (frames::hold(draft, body, held), joints)
 }
@@ -196,8 +194,7 @@ fn contradiction(draft: &Draft, body: &Placed, leds: [&Led; 2], point: u32, axis
     let start = body.mesh.points[point as usize];
     let size = body.mesh.bounds().diagonal();
     let pins = leds.map(|led| &body.spec.pins[led.pin]);
-    let sampled = (0..SAMPLES).map(|sample| (sample as f64 * GOLDEN).fract() * draft.spec.run.duration);
-    let times = pins.into_iter().flat_map(key_times).chain(sampled);
+    let times = pins.into_iter().flat_map(key_times).chain(sampled(draft));
     for time in times {
         let [a, b] = leds.map(|led| led.offset(start, time)[axis]);
         if (a - b).abs() > SAME * f64::max(f64::max(a.abs(), b.abs()), size) {
@@ -212,6 +209,19 @@ fn contradiction(draft: &Draft, body: &Placed, leds: [&Led; 2], point: u32, axis
         }
     }
     None
+}
+
+fn sampled(draft: &Draft) -> impl Iterator<Item = f64> {
+    let duration = draft.spec.run.duration;
+    (0..SAMPLES).map(move |sample| (sample as f64 * GOLDEN).fract() * duration)
+}
+
+/// Times [s] at which motions of the pins of a body are looked at; none where no pin leads.
+pub fn times_of(draft: &Draft, body: &Placed) -> Vec<f64> {
+    let leads = |pin: &&Pin| pin.motion.is_some() || pin.rotation.is_some() || pin.bone.is_some();
+    let leading: Vec<&Pin> = body.spec.pins.iter().filter(leads).collect();
+    let sampled = sampled(draft).filter(|_| !leading.is_empty());
+    leading.iter().flat_map(|pin| key_times(pin)).chain(sampled).collect()
 }
 
 fn key_times(pin: &Pin) -> impl Iterator<Item = f64> + '_ {

@@ -76,7 +76,9 @@ pub fn power_from_outside(world: &mut World) -> f64 {
             let mut power = 0.0;
             for (index, force) in system.forces.iter().enumerate() {
                 let Declaration { conservative, internal, velocity_terms, .. } = force.declaration();
-                if internal || velocity_terms || force.memory_len() > 0 {
+                // what a body remembers of itself stays as it is meanwhile; clamps that are led do work on it
+                let remembers = force.memory_len() > 0 && !(conservative && force.acts_within());
+                if internal || velocity_terms || remembers {
                     continue;
                 }
                 let (at, scratch) = (system.view(index, &ws.rows, state, around), &mut ws.scratches[index]);

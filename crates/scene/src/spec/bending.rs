@@ -42,10 +42,18 @@ pub(crate) static BENDING: Keys = Keys::new(
             "κ₁₁, κ₂₂ and κ₁₂ that it wants beside those of its rest shape, positive towards its normals",
         )
         .or(Value::Vector([0.0; 3])),
+        Key::number(
+            "rayleigh_stiffness",
+            "s",
+            Range::NOT_NEGATIVE,
+            "time b of moments b D κ̇ that damp bending, beside those of `damping.viscosity`",
+        )
+        .or(Value::Number(0.0)),
         Key::new(
             "clamped",
             Shape::Region,
-            "edges of the border with both ends inside keep the slope that they have at rest; pins hold their points",
+            "edges of the border with both ends inside keep the slope that they have at rest, and turn as pins lead both ends by a \
+             `rotation`; pins hold their points",
         ),
     ],
 );
@@ -57,6 +65,8 @@ pub struct BendingSpec {
     pub rigidities: Option<Rigidities>,
     /// `(κ₁₁, κ₂₂, κ₁₂)` [1/m].
     pub natural_curvature: Vec3,
+    /// Of moments per rate of the curvature over those per curvature [s].
+    pub rayleigh_stiffness: f64,
     pub clamped: Option<Region>,
     pub site: Site,
 }
@@ -67,6 +77,7 @@ impl BendingSpec {
             axis: super::region::direction(reader, "axis").unwrap_or(Vec3::X),
             rigidities: rigidities(reader),
             natural_curvature: reader.vector("natural_curvature"),
+            rayleigh_stiffness: reader.number("rayleigh_stiffness"),
             clamped: reader.has("clamped").then(|| Region::read(reader, "clamped")).flatten(),
             site: reader.site(),
         }

@@ -74,8 +74,13 @@ impl Measured {
             let is_there = formulation == FORMULATIONS[0]
                 || scene("cantilever_dynamic", &settings(1, formulation)).is_ok();
             if is_there {
-                let sampling =
-                    Sampling { threads: 1, samples: effort.choose(3, 11), in_a_row: 1, beside: None };
+                let sampling = Sampling {
+                    threads: 1,
+                    samples: effort.choose(3, 11),
+                    in_a_row: 1,
+                    force: "bar.material",
+                    beside: None,
+                };
                 let times = force_times(&settings(across, formulation), sampling)?;
                 measured.push(Self { formulation, element: kind.name(), law, times });
             }

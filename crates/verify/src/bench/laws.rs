@@ -394,7 +394,7 @@ pub fn law_ready(effort: Effort) -> Result<Vec<Figure>, String> {
     Ok(measured?.concat())
 }
 
-/// The elastic force of the bent bar alone, and its derivative along a direction.
+/// One force of the bent bar alone, and its derivative along a direction.
 pub struct ForceTimes {
     pub force: Timed,
     pub derivative: Timed,
@@ -414,13 +414,15 @@ pub struct Sampling<'a> {
     pub samples: usize,
     /// Evaluations of each sample, one after another: those of several find in the caches what they left there, as steps do.
     pub in_a_row: usize,
+    /// Of the bar: `bar.material`.
+    pub force: &'a str,
     /// Settings of the bar of which as many complete steps are timed in each turn, if any, so that both meet the same machine.
     pub beside: Option<&'a [String]>,
 }
 
-/// Times force and derivative of the bar's material.
+/// Times a force of the bar and its derivative.
 pub fn force_times(settings: &[String], sampling: Sampling) -> Result<ForceTimes, String> {
-    let Sampling { threads, samples, in_a_row, beside } = sampling;
+    let Sampling { threads, samples, in_a_row, force, beside } = sampling;
     with_threads(threads, || {
         let mut other = beside.map(started).transpose()?;
         let scene = scene("cantilever_dynamic", settings)?;
@@ -428,8 +430,8 @@ pub fn force_times(settings: &[String], sampling: Sampling) -> Result<ForceTimes
         let mut world = scene.model.start(scene.state);
         bend(&mut world).map_err(|error| error.to_string())?;
         world.with_system(0, |system, state, around, ws| {
-            let index = system.forces.iter().position(|force| force.name() == "bar.material");
-            let index = index.ok_or("the bar has no material")?;
+            let index = system.forces.iter().position(|of_bar| of_bar.name() == force);
+            let index = index.ok_or_else(|| format!("the bar has no force `{force}`"))?;
             let (force, at) = (&system.forces[index], system.view(index, &ws.rows, state, around));
             let scratch = &mut ws.scratches[index];
             let wave = |i: usize| (i as f64 * 12.9898).sin();
@@ -538,7 +540,8 @@ pub fn forces(
     for threads in thread_counts() {
         let steps = super::beams::explicit_settings(element, cells, "10 us");
         let beside = matches!(wanted, Wanted::Steps).then_some(&steps[..]);
-        let sampling = Sampling { threads, samples: effort.choose(7, 41), in_a_row: 5, beside };
+        let sampling =
+            Sampling { threads, samples: effort.choose(7, 41), in_a_row: 5, force: "bar.material", beside };
         let times = force_times(&settings, sampling)?;
         let held = |baseline, wanted_of: &str| Held {
             error: times.derivative_error,
@@ -564,10 +567,47 @@ pub fn forces(
     Ok(figures)
 }
 
+/// Forces of a bent shell of triangles, one thread: what resists bending, and beside it, in turn over the same cells, what resists stretch.
+pub fn shells(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let settings = [
+        "bodies.bar.mesh={ generate = \"sheet\", length = 1, width = 0.1, cells_along = 400, cells_across = 40, element = \"tri3\" }",
+        "bodies.bar.section={ name = \"membrane\", thickness = \"1 mm\" }",
+        "bodies.bar.material.name=\"st_venant_kirchhoff\"",
+        // the bar is bent along y
+        "bodies.bar.rotate=[\"90 deg\", 0, 0]",
+        "bodies.bar.bending={}",
+    ];
+    let settings = settings.map(str::to_owned);
+    let times = |force: &str| {
+        let samples = effort.choose(7, 41);
+        force_times(&settings, Sampling { threads: 1, samples, in_a_row: 5, force, beside: None })
+    };
+    let (bending, membrane) = (times("bar.bending")?, times("bar.material")?);
+    let held = |times: &ForceTimes| Held {
+        error: times.derivative_error,
+        error_of: "derivative against differences of the force".to_owned(),
+        baseline: None,
+    };
+    let ratios = bending.force.seconds.iter().zip(&membrane.force.seconds).map(|(bent, flat)| bent / flat);
+    let (over_membrane, unit) = (format!("{name}_over_membrane"), ("x membrane", false));
+    let figure = bending.force.figure(&over_membrane, ratios.collect(), &held(&bending), unit);
+    Ok(vec![
+        bending.force.elements_per_second(name, &held(&bending)),
+        membrane.force.elements_per_second(&format!("{name}_membrane"), &held(&membrane)),
+        Figure { by_processor: over(&bending.force.processor, &membrane.force.processor), ..figure },
+    ])
+}
+
 /// Time of the forces of tetrahedra by Green and Lagrange's strain over that by Cauchy's, one thread (V-01, V-28).
 pub fn green_over_cauchy(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let times = |law: &str| {
-        let sampling = Sampling { threads: 1, samples: effort.choose(7, 41), in_a_row: 5, beside: None };
+        let sampling = Sampling {
+            threads: 1,
+            samples: effort.choose(7, 41),
+            in_a_row: 5,
+            force: "bar.material",
+            beside: None,
+        };
         force_times(&bar("tet4", 12, law), sampling)
     };
     let (green, cauchy) = (times("st_venant_kirchhoff")?, times("linear")?);

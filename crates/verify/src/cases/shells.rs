@@ -78,6 +78,32 @@ const CURL: Case = Case {
     ..SHELF
 };
 
+/// `exp(-1)` of a tenth of a millimetre: motion back without a swing takes `D_v / D` of moments per rate and per curvature.
+const LEFT: f64 = 1e-4 * 0.367_879_441_171_442_3;
+
+const DECAY: Case = Case {
+    scene: "shell_decay",
+    reading: Reading::component("rayleigh", 2),
+    reference: LEFT,
+    // a hundred implicit steps to the time: (1 + 1/100)^-100 is half a hundredth more. Inertia of 1/(1.6 s 62.4/s)² = 1e-4, slopes of
+    // 3e-4 squared; both moments are of one shape
+    tolerance: Tolerance::Relative(5.2e-3),
+    source: "Kelvin-Voigt damping: w' D_v = -w D",
+    mutation: r#"bodies.rayleigh.bending.rayleigh_stiffness="1.62 s""#,
+    ..SHELF
+};
+
+const RULER: Case = Case {
+    scene: "shell_ruler",
+    reading: Reading::component("end", 2),
+    reference: 0.5,
+    // rounding, and what Newton's method leaves of a motion of a metre
+    tolerance: Tolerance::Absolute(1e-8),
+    source: "a rigid turn strains nothing",
+    mutation: r#"bodies.ruler.pins[0].rotation.offsets=[[0,0,0],[0,"-89 deg",0]]"#,
+    ..SHELF
+};
+
 pub(super) const CASES: &[Case] = &[
     Case { id: "shell_supported_order", what: "order of the error of a plate on its edges", ..PLATE },
     Case {
@@ -110,4 +136,30 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("end", 0),
         ..CURL
     },
+    Case {
+        id: "shell_springs_back_crooked",
+        what: "energy of a crooked strip that lies on its natural curvature, clamp and free edges too",
+        reading: Reading::last("energy"),
+        settings: &["bodies.strip.mesh.disorder=0.2", "parameters.curvature=1e-3"],
+        reference: 0.0,
+        // flat, it stores E h³/24 κ² A = 1.7e-9 J, and a thousandth of that where free edges do not know of the curvature; slopes of
+        // 4e-4 leave their squares, and damping exp(-48)
+        tolerance: Tolerance::Absolute(1e-14),
+        source: "a surface of constant curvature, which is in every patch of triangles",
+        // triangles of steep slopes are off by their squares
+        mutation: "parameters.curvature=0.5",
+        ..CURL
+    },
+    Case { id: "shell_decays_by_rayleigh", what: "what is left of the bend of a damped plate", ..DECAY },
+    Case {
+        id: "shell_decays_by_viscosity",
+        what: "what is left of the bend of a viscous plate",
+        reading: Reading::component("viscous", 2),
+        // the first mode bends both ways alike, and its twist and its bending across each other weigh less with ν = 0 than with 0.3 by
+        // what the triangles are off from Δw² alone, of the order of (π/8)²/12
+        tolerance: Tolerance::Relative(2e-2),
+        mutation: r#"bodies.viscous.damping.viscosity="1000 MPa s""#,
+        ..DECAY
+    },
+    Case { id: "shell_clamp_is_turned", what: "height of the end of a ruler whose vice was turned", ..RULER },
 ];
