@@ -257,3 +257,29 @@ fn deformations_of_the_whole_turn_with_the_body() {
         assert!((a / b - 1.0).abs() < 1e-8, "{straight:?} {turned:?}");
     }
 }
+
+/// Modes that polynomials make too stiff, and pairs of modes that are split, are warned of; others are not.
+#[test]
+fn doubtful_modes_are_warned_of() {
+    let told = |modes: &str, thickness: f64| {
+        let mesh = format!(
+            "bodies.beam.mesh={{ generate = \"bar\", size = [1, 0.04, {thickness}], cells = [8, 1, 1], element = \"hex20\" }}"
+        );
+        let scene = read("modal_cantilever", &[&format!("bodies.beam.modes={{ {modes} }}"), &mesh]);
+        scene.unwrap_or_else(|errors| panic!("{errors}")).warnings.join("; ")
+    };
+    // a square beam bends both ways alike
+    assert!(told("count = 5", 0.04).contains("takes one mode of a pair"), "{}", told("count = 5", 0.04));
+    assert!(!told("count = 6", 0.04).contains("pair"), "{}", told("count = 6", 0.04));
+    // the parabola of a thin beam is stiffer by a quarter than its own shape, of five powers it is near
+    let stiff = told("count = 1, degree = 2", 0.03);
+    assert!(
+        stiff.contains("mode 1 among polynomials") && stiff.contains("above that of the mesh"),
+        "{stiff}"
+    );
+    assert!(
+        !told("count = 1, degree = 5", 0.03).contains("polynomials"),
+        "{}",
+        told("count = 1, degree = 5", 0.03)
+    );
+}

@@ -23,7 +23,7 @@ use souple_math::Vec3;
 
 pub use modal::{ModalDamping, ModalStiffness};
 pub use polynomial::{Degree, Polynomial, PolynomialDescription, PolynomialForce};
-pub use shapes::{GlobalDeformation, monomials};
+pub use shapes::{GLOBAL_DEFORMATIONS, GlobalDeformation, monomials};
 
 /// Rows of the frame itself: its origin and its axes. Those of the modes follow, three each.
 const ROWS_OF_FRAME: usize = 4;

@@ -1,6 +1,7 @@
 //! Fields that whole bodies deform by: monomials of where matter rests, and the deformations of a whole that have names.
 
 use souple_math::Vec3;
+use souple_table::{Entry, Table};
 
 /// All monomials `u^i v^j w^k` of a degree and below along each axis, at points of coordinates about one: a basis of the polynomial fields.
 pub fn monomials(degree: usize, points: &[Vec3]) -> Vec<Vec<Vec3>> {
@@ -37,51 +38,75 @@ pub enum GlobalKind {
     Bend,
 }
 
+/// All of them by their names: `stretch_x`, `twist_x`, and those of two axes `shear_xy`, `taper_xy`, `bend_xy`.
+pub static GLOBAL_DEFORMATIONS: Table<GlobalDeformation> = Table {
+    kind: "deformation",
+    entries: &[
+        &entry(
+            "stretch_x",
+            "longer along x, or shorter, by one number for all of the body",
+            GlobalKind::Stretch,
+            [0, 0],
+        ),
+        &entry(
+            "stretch_y",
+            "longer along y, or shorter, by one number for all of the body",
+            GlobalKind::Stretch,
+            [1, 1],
+        ),
+        &entry(
+            "stretch_z",
+            "longer along z, or shorter, by one number for all of the body",
+            GlobalKind::Stretch,
+            [2, 2],
+        ),
+        &entry("twist_x", "turned about x, the farther along it the more", GlobalKind::Twist, [0, 0]),
+        &entry("twist_y", "turned about y, the farther along it the more", GlobalKind::Twist, [1, 1]),
+        &entry("twist_z", "turned about z, the farther along it the more", GlobalKind::Twist, [2, 2]),
+        &entry(
+            "shear_xy",
+            "moved along y, the farther along x, and as much the other way round",
+            GlobalKind::Shear,
+            [0, 1],
+        ),
+        &entry(
+            "shear_xz",
+            "moved along z, the farther along x, and as much the other way round",
+            GlobalKind::Shear,
+            [0, 2],
+        ),
+        &entry(
+            "shear_yz",
+            "moved along z, the farther along y, and as much the other way round",
+            GlobalKind::Shear,
+            [1, 2],
+        ),
+        &entry("taper_xy", "thicker along y the farther along x", GlobalKind::Taper, [0, 1]),
+        &entry("taper_xz", "thicker along z the farther along x", GlobalKind::Taper, [0, 2]),
+        &entry("taper_yx", "thicker along x the farther along y", GlobalKind::Taper, [1, 0]),
+        &entry("taper_yz", "thicker along z the farther along y", GlobalKind::Taper, [1, 2]),
+        &entry("taper_zx", "thicker along x the farther along z", GlobalKind::Taper, [2, 0]),
+        &entry("taper_zy", "thicker along y the farther along z", GlobalKind::Taper, [2, 1]),
+        &entry("bend_xy", "lines along x become parabolas towards y", GlobalKind::Bend, [0, 1]),
+        &entry("bend_xz", "lines along x become parabolas towards z", GlobalKind::Bend, [0, 2]),
+        &entry("bend_yx", "lines along y become parabolas towards x", GlobalKind::Bend, [1, 0]),
+        &entry("bend_yz", "lines along y become parabolas towards z", GlobalKind::Bend, [1, 2]),
+        &entry("bend_zx", "lines along z become parabolas towards x", GlobalKind::Bend, [2, 0]),
+        &entry("bend_zy", "lines along z become parabolas towards y", GlobalKind::Bend, [2, 1]),
+    ],
+};
+
+const fn entry(
+    name: &'static str,
+    summary: &'static str,
+    kind: GlobalKind,
+    [along, towards]: [usize; 2],
+) -> Entry<GlobalDeformation> {
+    let build = GlobalDeformation { kind, along, towards };
+    Entry { name, summary, source: "Barr 1984, for small deformations", parameters: &[], build }
+}
+
 impl GlobalDeformation {
-    /// All by their names: `stretch_x`, `twist_x`, and those of two axes `shear_xy`, `taper_xy`, `bend_xy`.
-    pub const NAMES: [&'static str; 21] = [
-        "stretch_x",
-        "stretch_y",
-        "stretch_z",
-        "twist_x",
-        "twist_y",
-        "twist_z",
-        "shear_xy",
-        "shear_xz",
-        "shear_yz",
-        "taper_xy",
-        "taper_xz",
-        "taper_yx",
-        "taper_yz",
-        "taper_zx",
-        "taper_zy",
-        "bend_xy",
-        "bend_xz",
-        "bend_yx",
-        "bend_yz",
-        "bend_zx",
-        "bend_zy",
-    ];
-
-    /// `None` where it is none of [`Self::NAMES`].
-    pub fn named(name: &str) -> Option<Self> {
-        if !Self::NAMES.contains(&name) {
-            return None;
-        }
-        let (kind, axes) = name.split_once('_')?;
-        let mut axes = axes.chars().map(|axis| "xyz".find(axis));
-        let (along, towards) = (axes.next()??, axes.next().flatten());
-        let kind = match kind {
-            "stretch" => GlobalKind::Stretch,
-            "shear" => GlobalKind::Shear,
-            "taper" => GlobalKind::Taper,
-            "twist" => GlobalKind::Twist,
-            "bend" => GlobalKind::Bend,
-            _ => return None,
-        };
-        Some(Self { kind, along, towards: towards.unwrap_or(along) })
-    }
-
     /// The field at a place from the body's middle.
     pub fn at(self, x: Vec3) -> Vec3 {
         let (k, l) = (self.along, self.towards);

@@ -160,6 +160,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_steps(&mut draft);
     network::warn_of_heat(&mut draft);
     doubts::warn(&mut draft);
+    reduced::warn(&mut draft);
     levels::warn_of_budgets(&mut draft);
     levels::warn_of_cuts(&mut draft);
     imposing::warn(&mut draft);

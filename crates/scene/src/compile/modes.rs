@@ -1,5 +1,6 @@
 //! Bodies of modes: the natural modes of a body of finite elements are found once, and its points become rows over a frame and amplitudes.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use souple_engine::modes::{ModesError, RitzPairs, Settings, lowest, refuse_loose, rigid_motions, within};
@@ -8,6 +9,7 @@ use souple_math::{Mat3, Vec3};
 use souple_models::materials::Material;
 use souple_models::reduced::{Coupling, ModalBasis, ModalDamping, ModalStiffness, monomials};
 use souple_models::solids::{FlatCell, SolidDescription, SolidForce};
+use souple_table::four_digits;
 
 use super::Draft;
 use super::bodies::{Placed, add_point_mass, solid_name};
@@ -26,12 +28,18 @@ pub struct PlacedModes {
     coupling: Coupling,
     /// Natural modes, the first of the basis; deformations of the whole follow.
     natural: usize,
+    /// In words, why its modes may not be those that are meant.
+    doubts: Vec<String>,
 }
 
 /// Rigid motions of a body in space.
 const RIGID: usize = 6;
 /// `ω²` of what moves rigidly is rounding, below this part of that of the first mode that strains.
 const RIGID_PART: f64 = 1e-6;
+/// Modes are one pair up to this part of their frequency: a body that is the same along two axes has such, and its mesh is that but for its cells.
+const PAIR: f64 = 0.01;
+/// Modes among polynomials are told to be too stiff from this part of their frequency on.
+const TOO_STIFF: f64 = 0.05;
 /// Where `ω²` of free bodies is sought from, below zero, over the inverse square of the time that a longitudinal wave takes across: thin
 /// bodies swing that slowly.
 const SHIFT: f64 = 1e-4;
@@ -60,6 +68,11 @@ impl PlacedModes {
     /// `ω²` of each natural mode [1/s²].
     pub fn eigenvalues(&self) -> &[f64] {
         &self.basis.eigenvalues()[..self.natural]
+    }
+
+    /// In words, why its modes may not be those that are meant.
+    pub fn doubts(&self) -> &[String] {
+        &self.doubts
     }
 
     /// Appends the points of the mesh to the rows.
@@ -156,26 +169,27 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
         return None;
     };
     let mass = of_points.clone();
-    let Found { modes, global } = match modes_of(draft, body, spec, centre, (of_points, elastic, constraints))
-    {
-        Ok(modes) => modes,
-        Err(error) => {
-            let name = &body.spec.name;
-            match error.available() {
-                Some(available) => {
-                    let others = spec.global.len() + if is_held { 0 } else { RIGID };
-                    let most = available.saturating_sub(others);
-                    let message = format!("body `{name}` has {most} modes, not {}", spec.count);
-                    refuse(message, "a smaller `count`, a finer mesh or a higher `degree`");
+    let Found { modes, global, next, of_mesh } =
+        match modes_of(draft, body, spec, centre, (of_points, elastic, constraints)) {
+            Ok(modes) => modes,
+            Err(error) => {
+                let name = &body.spec.name;
+                match error.available() {
+                    Some(available) => {
+                        let others = spec.global.len() + if is_held { 0 } else { RIGID };
+                        let most = available.saturating_sub(others);
+                        let message = format!("body `{name}` has {most} modes, not {}", spec.count);
+                        refuse(message, "a smaller `count`, a finer mesh or a higher `degree`");
+                    }
+                    None => {
+                        let expected =
+                            "one body that hangs together, and pins that hold it as a whole or none";
+                        refuse(format!("no modes were found of body `{name}`: {error}"), expected);
+                    }
                 }
-                None => {
-                    let expected = "one body that hangs together, and pins that hold it as a whole or none";
-                    refuse(format!("no modes were found of body `{name}`: {error}"), expected);
-                }
+                return None;
             }
-            return None;
-        }
-    };
+        };
     if global.shapes.len() < spec.global.len() {
         let message = format!(
             "of the {} `global` deformations of body `{}` {} make others, or nothing but rigid motions, on this mesh",
@@ -208,6 +222,7 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     let mut eigenvalues = values[rigid..].to_vec();
     let mut shapes = modes.shapes[rigid..].to_vec();
     let natural = shapes.len();
+    let doubts = [too_stiff(&eigenvalues, &of_mesh), split_pair(&eigenvalues, next)];
     eigenvalues.extend(global.eigenvalues.iter().map(|value| spec.global_stiffness * value));
     shapes.extend(global.shapes);
     let basis = ModalBasis::new(centre, &body.mesh.points, shapes, eigenvalues);
@@ -215,7 +230,37 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedModes> {
     // what a frame of reference that turns does to one mode by another is in the masses between them
     let swings_alone = is_held && draft.spec.world.frame.is_none();
     let coupling = if swings_alone { Coupling::OfOneMode } else { Coupling::All };
-    Some(PlacedModes { basis, first_row: 0, held, coupling, natural })
+    let doubts = doubts.into_iter().flatten().collect();
+    Some(PlacedModes { basis, first_row: 0, held, coupling, natural, doubts })
+}
+
+/// The first mode among polynomials that is stiffer than that of the mesh by more than a little, in words: no mode of fewer fields has a
+/// lower frequency than the one of its number among all fields (Courant and Fischer).
+fn too_stiff(squares: &[f64], of_mesh: &[f64]) -> Option<String> {
+    let excess =
+        |(number, (square, least)): (usize, (&f64, &f64))| (number, (square / least).sqrt() - 1.0, *square);
+    let modes = squares.iter().zip(of_mesh).enumerate().map(excess);
+    let (number, excess, square) = modes.into_iter().find(|(_, excess, _)| *excess > TOO_STIFF)?;
+    Some(format!(
+        "mode {} among polynomials of this `degree` swings at {} Hz, {:.0} % above that of the mesh: polynomials are too stiff for a body this \
+         thin, or across a jump of stiffness; leave `degree` out, or raise it",
+        number + 1,
+        four_digits(square.sqrt() / TAU),
+        100.0 * excess
+    ))
+}
+
+/// A pair of modes of one frequency, of which the last that is taken is the one and the next the other, in words.
+fn split_pair(squares: &[f64], next: Option<f64>) -> Option<String> {
+    let (last, next) = (*squares.last()?, next?);
+    ((next / last).sqrt() - 1.0 <= PAIR).then(|| {
+        format!(
+            "`count` = {} takes one mode of a pair at {} Hz and leaves the other out: which, and so where the body may bend, is chance of the \
+             mesh; take one more or one fewer",
+            squares.len(),
+            four_digits(last.sqrt() / TAU)
+        )
+    })
 }
 
 /// The mass of the points of a body and its centre; `None` where there is none.
@@ -266,6 +311,10 @@ struct Found {
     modes: RitzPairs,
     /// Deformations of the whole.
     global: RitzPairs,
+    /// `ω²` of the next mode that was left out, where it is known.
+    next: Option<f64>,
+    /// Of modes among polynomials, `ω²` of those of the mesh by the same numbers, as far as these are known.
+    of_mesh: Vec<f64>,
 }
 
 /// The lowest modes of the body as a system of points, and its deformations of the whole about a place.
@@ -308,15 +357,27 @@ fn modes_of(
             let places: Vec<Vec3> = body.mesh.points.iter().map(coordinates).collect();
             (monomials(degree, &places), places)
         });
+        let mut of_mesh = Vec::new();
         let mut modes = if let Some((fields, places)) = &polynomials {
             if is_held {
                 refuse_loose(system, places)?;
             }
+            // what these cannot be compared with is not told
+            if spec.global.is_empty() {
+                let settings = Settings { count: wanted, shift, ..Settings::default() };
+                let found = lowest(system, state, around, ws, &settings);
+                of_mesh.extend(found.into_iter().flat_map(|found| found.eigenvalues).skip(rigid));
+            }
             within(system, state, around, ws, fields, &[])?
         } else {
-            // across deformations of the whole there are as many fewer
-            let settings = Settings { count: wanted + spec.global.len(), shift, ..Settings::default() };
-            let found = lowest(system, state, around, ws, &settings)?;
+            // across deformations of the whole there are as many fewer; one more tells whether a pair is split
+            let count = wanted + spec.global.len();
+            let mut sought =
+                |count| lowest(system, state, around, ws, &Settings { count, shift, ..Settings::default() });
+            let found = match sought(count + 1) {
+                Err(error) if error.available().is_some_and(|available| available >= count) => sought(count)?,
+                found => found?,
+            };
             RitzPairs { eigenvalues: found.eigenvalues, shapes: found.shapes }
         };
         let mut global = RitzPairs::default();
@@ -329,7 +390,7 @@ fn modes_of(
             let mut apart = rigid_motions(&arms);
             global = within(system, state, around, ws, &fields, &apart)?;
             if global.shapes.len() < fields.len() {
-                return Ok(Found { modes, global });
+                return Ok(Found { modes, global, next: None, of_mesh });
             }
             apart.extend(global.shapes.iter().cloned());
             let space = polynomials.as_ref().map_or(&modes.shapes[rigid..], |(fields, _)| fields);
@@ -341,8 +402,9 @@ fn modes_of(
         if available < wanted {
             return Err(ModesError::too_many(wanted + spec.global.len(), available + spec.global.len()));
         }
+        let next = modes.eigenvalues.get(wanted).copied();
         modes.truncate(wanted);
-        Ok(Found { modes, global })
+        Ok(Found { modes, global, next, of_mesh })
     })
 }
 

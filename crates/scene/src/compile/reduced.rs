@@ -26,6 +26,19 @@ pub fn place(draft: &Draft, body: &Placed) -> Option<PlacedReduced> {
     }
 }
 
+/// Adds warnings on what bodies of few unknowns may not be as meant.
+pub fn warn(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for body in &draft.bodies {
+        let (Some(PlacedReduced::Modes(modes)), Some(spec)) = (&body.reduced, &body.spec.modes) else {
+            continue;
+        };
+        let place = draft.place(&spec.site);
+        warnings.extend(modes.doubts().iter().map(|doubt| format!("{place}: {doubt}")));
+    }
+    draft.warnings.extend(warnings);
+}
+
 impl PlacedReduced {
     pub fn kind(&self) -> UnknownKind {
         match self {

@@ -1,6 +1,6 @@
 //! Bodies that move as a sum of their lowest natural modes, about a frame.
 
-use souple_models::reduced::GlobalDeformation;
+use souple_models::reduced::{GLOBAL_DEFORMATIONS, GlobalDeformation};
 use souple_table::{Range, Value};
 
 use crate::diagnostic::{Code, Site};
@@ -77,15 +77,15 @@ fn global(reader: &Reader) -> Vec<GlobalDeformation> {
         reader.log().add(Code::Conflict, &reader.site_of("global"), message, expected);
     };
     for name in reader.texts("global") {
-        match GlobalDeformation::named(&name) {
-            None => refuse(
-                format!("`{name}` is no deformation of a whole body"),
-                &one_of(&GlobalDeformation::NAMES),
-            ),
-            Some(known) if found.contains(&known) => {
+        match GLOBAL_DEFORMATIONS.find(&name) {
+            Err(_) => {
+                let names: Vec<&str> = GLOBAL_DEFORMATIONS.names().collect();
+                refuse(format!("`{name}` is no deformation of a whole body"), &one_of(&names));
+            }
+            Ok(known) if found.contains(&known.build) => {
                 refuse(format!("`{name}` is there twice"), "each deformation once");
             }
-            Some(known) => found.push(known),
+            Ok(known) => found.push(known.build),
         }
     }
     found

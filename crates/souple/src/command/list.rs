@@ -12,7 +12,7 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, laws, elements, sections, links, modules, placements, weights, points, steppers, solvers, preconditioners,
+    /// materials, laws, elements, sections, links, modules, placements, weights, points, deformations, steppers, solvers, preconditioners,
     /// generators, bodies, shapes, skin_parts, skin_terms, skin_warps, devices, formats, quantities, functions, units, colour_maps, colour_scales
     ///
     /// The kinds themselves if left out.
@@ -118,6 +118,7 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
         ("weights", pages_of(&souple_models::frames::WEIGHTS)),
         ("points", pages_of(&souple_models::frames::POINTS)),
+        ("deformations", pages_of(&souple_models::reduced::GLOBAL_DEFORMATIONS)),
         ("steppers", pages_of(&souple_engine::steppers::TABLE)),
         ("solvers", pages_chosen_by(&linear::SOLVER, &souple_solve::solvers::TABLE)),
         ("preconditioners", pages_chosen_by(&linear::PRECONDITIONER, &souple_solve::precondition::TABLE)),
