@@ -131,3 +131,20 @@ fn all_parts_of_a_mesh_are_listed() {
     folder.write("bar.face", "0 0\n");
     assert_eq!(folder.scene().inputs.files.len(), 3);
 }
+
+/// Points of cells that are split have the numbers after all those of the file, of points too that no cell has.
+#[test]
+fn points_of_split_cells_are_numbered_after_the_file() {
+    let folder = Folder::new("split");
+    let body = "mesh = \"bar.node\"\nsplit = {}\nmaterial = { name = \"neo_hookean\", youngs_modulus = \"10 kPa\", poissons_ratio = 0.3, density = 1000 }";
+    folder.write("scene.toml", &format!("format = 1\n[world]\nperiod = \"10 ms\"\n[bodies.bar]\n{body}\n"));
+    folder.write("bar.node", "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 2 2 2\n");
+    folder.write("bar.ele", "1 4 0\n1 1 2 3 4\n");
+    assert_eq!(folder.scene().bodies[0].mesh.points.len(), 10);
+    let pinned = |number: u32| {
+        let pin = format!("bodies.bar.pins=[{{ region = {{ points = [{number}] }} }}]");
+        read_file(&folder.0.join("scene.toml"), &[pin]).is_ok()
+    };
+    // four corners, one that is loose, and six middles
+    assert_eq!([3, 4, 5, 10, 11].map(pinned), [true, false, true, true, false]);
+}

@@ -6,6 +6,7 @@
 
 use souple_mesh::{MeshSize, available_memory, gigabytes};
 
+use super::Draft;
 use super::bodies::Placed;
 use super::network::size as network_size;
 use crate::diagnostic::{Code, Log, Site};
@@ -115,6 +116,17 @@ pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
     check(&needs.collect::<Vec<_>>(), available_memory(), log);
 }
 
+/// Whether a body whose cells are about to be split cannot fit as large as it becomes at least, which is reported.
+pub fn is_too_large(body: &Body, size: MeshSize, draft: &Draft) -> bool {
+    let needs = Needs {
+        body: &body.name,
+        site: body.split.as_ref().map_or(&body.site, |split| &split.site),
+        bytes: bytes_of(size, CELL, matrix_of(draft.spec, &body.system)),
+        size: counts(size),
+    };
+    check(&[needs], available_memory(), draft.log)
+}
+
 /// What frames need at the points of a body: four numbers of each frame that reaches a point, and a place in the matrix for each pair
 /// of them, which eight points share.
 fn bytes_of_frames(body: &Placed) -> u64 {
@@ -146,13 +158,14 @@ fn counts(size: MeshSize) -> String {
     format!("{} points and about {} cells", size.points, size.cells)
 }
 
-fn check(needs: &[Needs], available: Option<u64>, log: &Log) {
+/// Whether it is too much, which is reported.
+fn check(needs: &[Needs], available: Option<u64>, log: &Log) -> bool {
     let total = needs.iter().fold(0_u64, |sum, needs| sum.saturating_add(needs.bytes));
     let (Some(largest), Some(available)) = (needs.iter().max_by_key(|needs| needs.bytes), available) else {
-        return;
+        return false;
     };
     if total <= available {
-        return;
+        return false;
     }
     let message = format!(
         "the scene needs at least {} of memory, and {} are available on this machine; the largest body is `{}`: {}",
@@ -167,6 +180,7 @@ fn check(needs: &[Needs], available: Option<u64>, log: &Log) {
         message,
         "fewer cells, or an explicit stepper, which stores no matrix",
     );
+    true
 }
 
 /// Implicit steppers store a matrix, unless they are told to do without.

@@ -110,8 +110,9 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         let points = numbers.collect();
         mesh.groups.insert(name.clone(), Group { points, ..Group::default() });
     }
-    let point_numbers = (0..mesh.points.len() as u32).collect();
-    Some((Shape { mesh, point_numbers, warnings }, links))
+    let numbered = mesh.points.len() as u32;
+    let point_numbers = (0..numbered).collect();
+    Some((Shape { mesh, point_numbers, numbered, warnings }, links))
 }
 
 /// Puts links of one law that are of parts together: a module placed a thousand times is one force.

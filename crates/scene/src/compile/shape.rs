@@ -2,10 +2,10 @@
 
 use souple_mesh::fill::{FillError, fill_mesh};
 use souple_mesh::repair::RepairLimits;
-use souple_mesh::{Mesh, MeshError};
+use souple_mesh::{Mesh, MeshError, MeshSize};
 use souple_table::in_number;
 
-use super::{Draft, tissue};
+use super::{Draft, memory, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::Body;
 use crate::spec::mesh::MeshSpec;
@@ -16,6 +16,8 @@ pub struct Shape {
     pub mesh: Mesh,
     /// The number that each point had in its file, ascending.
     pub point_numbers: Vec<u32>,
+    /// How many points were numbered there, those too that no cell has.
+    pub numbered: u32,
     pub warnings: Vec<String>,
 }
 
@@ -29,14 +31,18 @@ const NEAREST: f64 = 1e-10;
 pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
     let shape = build_of(body, body.mesh.as_ref()?, draft)?;
     match &body.split {
-        Some(split) => split_shape(shape, split, draft),
+        Some(split) => split_shape(shape, body, split, draft),
         None => Some(shape),
     }
 }
 
 /// A shape of smaller tetrahedra; new points have the numbers after those of its file.
-fn split_shape(shape: Shape, split: &SplitSpec, draft: &Draft) -> Option<Shape> {
-    let Shape { mut mesh, mut point_numbers, warnings } = shape;
+fn split_shape(shape: Shape, body: &Body, split: &SplitSpec, draft: &Draft) -> Option<Shape> {
+    let Shape { mut mesh, mut point_numbers, numbered, warnings } = shape;
+    let size = MeshSize { points: mesh.points.len() as u64, cells: mesh.cell_count() as u64 };
+    if memory::is_too_large(body, split.least_size(size), draft) {
+        return None;
+    }
     for _ in 0..split.times {
         mesh = match mesh.split(split.by) {
             Ok(mesh) => mesh,
@@ -52,9 +58,9 @@ fn split_shape(shape: Shape, split: &SplitSpec, draft: &Draft) -> Option<Shape> 
             }
         };
     }
-    let next = point_numbers.last().map_or(0, |last| last + 1);
-    point_numbers.extend((next..).take(mesh.points.len() - point_numbers.len()));
-    Some(Shape { mesh, point_numbers, warnings })
+    let new = mesh.points.len() - point_numbers.len();
+    point_numbers.extend((numbered..).take(new));
+    Some(Shape { mesh, point_numbers, numbered: numbered + new as u32, warnings })
 }
 
 /// One of the meshes of a body; `None` where it was refused.
@@ -109,6 +115,7 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
     }
     drop_facets_of_loose_points(&mut mesh);
     // points without mass would fall through every law: they go, and the others keep their numbers in the scene
+    let numbered = mesh.points.len() as u32;
     let point_numbers = mesh.remove_loose_points();
     let size = mesh.bounds().diagonal();
     mesh.points.iter_mut().for_each(|point| *point = body.placement.place(*point));
@@ -133,7 +140,7 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
             warnings.push(said(format!("{count} turned, the first is cells[{first}]")));
         }
     }
-    Some(Shape { mesh, point_numbers, warnings })
+    Some(Shape { mesh, point_numbers, numbered, warnings })
 }
 
 /// A mesh as it is made or read, of the body of this name; `None` where it was refused.
