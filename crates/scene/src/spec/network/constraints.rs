@@ -516,11 +516,15 @@ fn part(reader: &Reader) -> Option<Formula> {
 fn triples(reader: &Reader, key: &str) -> Option<Vec<[u32; 3]>> {
     let is_number = |x: f64| x >= 0.0 && x.fract() == 0.0 && x <= f64::from(u32::MAX);
     let mut triples = Vec::new();
-    for (index, corners) in reader.vectors(key).into_iter().enumerate() {
+    if !reader.has(key) {
+        return Some(triples);
+    }
+    // what is no list of three numbers has been told
+    for (index, corners) in reader.maybe_vectors(key)?.into_iter().enumerate() {
         let corners = corners.to_array();
         let [a, b, c] = corners;
         if !corners.into_iter().all(is_number) || a == b || b == c || c == a {
-            let message = format!("{key}[{index}] is {corners:?}");
+            let message = format!("{key}[{index}] is {}", listed(corners));
             let expected = "three different numbers of masses";
             reader.log().add(Code::OutOfRange, &reader.site_of(key), message, expected);
             return None;
@@ -528,6 +532,12 @@ fn triples(reader: &Reader, key: &str) -> Option<Vec<[u32; 3]>> {
         triples.push(corners.map(|corner| corner as u32));
     }
     Some(triples)
+}
+
+/// Numbers as they are written: without a point where they are whole.
+fn listed(numbers: [f64; 3]) -> String {
+    let [a, b, c] = numbers;
+    format!("[{a}, {b}, {c}]")
 }
 
 fn corners(reader: &Reader) -> Option<Vec<[u32; 3]>> {
