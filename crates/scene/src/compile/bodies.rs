@@ -22,8 +22,8 @@ use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
 use super::reduced::{self, PlacedReduced};
 use super::{
-    Draft, axes, frames, hanging, incompressible, inertial, levels, material_fields, modes, network,
-    octree, section, shape, start, tissue,
+    Draft, axes, frames, hanging, incompressible, inertial, levels, material_fields, modes, network, octree,
+    section, shape, start, tissue,
 };
 use crate::diagnostic::{Code, Site};
 use crate::reader::Chosen;
