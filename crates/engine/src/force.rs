@@ -129,6 +129,14 @@ pub struct Adapted {
     pub excess: f64,
 }
 
+/// What changes of law there were, of a force whose cells change theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawChanges {
+    pub count: f64,
+    /// What they took from what is stored [J]; below zero: gave.
+    pub taken: f64,
+}
+
 /// A point that touches, and what that does to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint<'a> {
@@ -410,6 +418,11 @@ pub trait Force: Send + Sync {
 
     /// The same, with how far the cell is from changing it.
     fn adapted(&self, _cell: usize, _at: &Configuration) -> Option<Adapted> {
+        None
+    }
+
+    /// How often its cells have changed their law so far; `None` where they have one law.
+    fn law_changes(&self, _at: &Configuration) -> Option<LawChanges> {
         None
     }
 

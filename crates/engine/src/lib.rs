@@ -42,8 +42,8 @@ pub use control::{CONTROL_LEN, Control};
 pub use detection::{Detected, Detection};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
-    Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,
-    LinkState, ParameterError, Scratch, TangentWeights, Unmet,
+    Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LawChanges,
+    LinkShown, LinkState, ParameterError, Scratch, TangentWeights, Unmet,
 };
 pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;

@@ -6,7 +6,6 @@
 //! where changes have made more energy than the body stores.
 
 use souple_engine::{EnergyReport, World};
-use souple_models::solids::AdaptiveForce;
 use souple_scene::BodyInfo;
 use souple_table::{counted, four_digits, readable};
 
@@ -78,7 +77,8 @@ impl Wavering {
                 return None;
             }
             let (_, of_law) = energy.by_force.iter().find(|(name, _)| *name == info.force)?;
-            let given = -of_law.dissipated;
+            let (force, at) = world.force_named(info.system, &info.force)?;
+            let given = -force.law_changes(&at)?.taken;
             (given > of_law.stored).then(|| {
                 format!(
                     "changes of law have given body `{}` {} J, more than the {} J that it stores: its elements take a law where this stores \
@@ -127,5 +127,5 @@ fn laws_of(world: &World, body: &BodyInfo) -> Option<Vec<f64>> {
 /// How often cells of a body that adapts have changed their law.
 fn switches_of(world: &World, body: &BodyInfo) -> Option<f64> {
     let (force, at) = world.force_named(body.system, &body.force)?;
-    Some(force.as_any().downcast_ref::<AdaptiveForce>()?.switches(&at))
+    Some(force.law_changes(&at)?.count)
 }

@@ -9,8 +9,8 @@ use std::ops::Range;
 
 use souple_engine::state::Pair;
 use souple_engine::{
-    Adapted, CellField, Configuration, Declaration, Editable, Energy, Force, ParameterError, Scratch,
-    TangentWeights,
+    Adapted, CellField, Configuration, Declaration, Editable, Energy, Force, LawChanges, ParameterError,
+    Scratch, TangentWeights,
 };
 use souple_math::Vec3;
 use souple_mesh::Mesh;
@@ -175,6 +175,10 @@ impl Force for DifferencedForce {
 
     fn adapted(&self, cell: usize, at: &Configuration) -> Option<Adapted> {
         self.inner.adapted(cell, at)
+    }
+
+    fn law_changes(&self, at: &Configuration) -> Option<LawChanges> {
+        self.inner.law_changes(at)
     }
 
     fn bytes(&self) -> usize {

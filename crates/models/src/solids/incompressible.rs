@@ -14,6 +14,9 @@
 //!   `m` and the damping `γ m` the characteristic `s³ + γ s² + c/m (s + 1/τ)` is that of a stable motion where `γ τ > 1`,
 //!   so the body is to have that much `rayleigh_mass`.
 //!
+//! What multipliers store as they move on, `V⁰ ∫ g dλ`, is booked as made: at once where they take over from step to step, by the mean of both
+//! ends of the step where it solves for them.
+//!
 //! With one volume for each cell (`s = 1`) hexahedra are those of Simo & Taylor with a constant pressure, and prisms and
 //! pyramids like them. Tetrahedra with linear shape functions have more cells than a third of what moves, and lock so: of these each shares
 //! out its volume evenly to its corners, and volumes about points are kept (Bonet & Burton). The law's own resistance to change of volume stays,
@@ -30,8 +33,8 @@ use std::any::Any;
 use souple_engine::state::Pair;
 use souple_engine::tangent::add_block;
 use souple_engine::{
-    Adapted, CellField, Configuration, Curvature, Declaration, Editable, Energy, Force, ParameterError,
-    Scratch, TangentWeights, Unmet,
+    Adapted, CellField, Configuration, Curvature, Declaration, Editable, Energy, Force, LawChanges,
+    ParameterError, Scratch, TangentWeights, Unmet,
 };
 use souple_math::{Mat3, Vec3};
 use souple_mesh::{ElementKind, Mesh};
@@ -154,6 +157,14 @@ fn of(scratch: &mut Scratch) -> &mut VolumeScratch {
 /// Own numbers of memory before the multipliers, after those of the elastic force: what multipliers that moved on took from what is stored [J].
 const HEAT: usize = 0;
 const MULTIPLIERS: usize = 1;
+
+/// Own memory by what it is of: `λ_k`, and of multipliers that are solved for, `λ_k` and `g_k` where the last step ended.
+struct Remembered<'a> {
+    heat: &'a mut f64,
+    multipliers: &'a mut [f64],
+    last_multipliers: &'a mut [f64],
+    last_growths: &'a mut [f64],
+}
 
 impl Incompressible {
     /// Of the elastic force of a mesh whose points are the rows from `first_row`.
@@ -297,6 +308,49 @@ impl Incompressible {
         &memory[self.inner.memory_len()..]
     }
 
+    fn multipliers<'a>(&self, memory: &'a [f64]) -> &'a [f64] {
+        &self.own(memory)[MULTIPLIERS..][..self.volumes.len()]
+    }
+
+    /// How many numbers of memory a volume has.
+    fn numbers_of_volume(&self) -> usize {
+        match self.rules.multipliers {
+            Multipliers::Solved { .. } => 3,
+            Multipliers::Relaxed { .. } => 1,
+        }
+    }
+
+    /// Of its own memory.
+    fn remembered<'a>(&self, own: &'a mut [f64]) -> Remembered<'a> {
+        let (heat, numbers) = own.split_at_mut(MULTIPLIERS);
+        let (multipliers, last) = numbers.split_at_mut(self.volumes.len());
+        let (last_multipliers, last_growths) = last.split_at_mut(last.len() / 2);
+        Remembered { heat: &mut heat[HEAT], multipliers, last_multipliers, last_growths }
+    }
+
+    /// Books what multipliers that a step has solved for have stored as they moved on, `V⁰ ∫ g dλ` by the mean of both ends of the step:
+    /// what steps by the trapezoidal rule have neither taken from motion nor given to it.
+    fn book_solved(&self, positions: &[Vec3], own: &mut [f64]) {
+        let Remembered { heat, multipliers, last_multipliers, last_growths } = self.remembered(own);
+        *heat -= sum_of(self.volumes.len(), |volume| {
+            let growth = 0.5 * (last_growths[volume] + self.growth(volume, positions));
+            self.at_rest[volume] * (multipliers[volume] - last_multipliers[volume]) * growth
+        });
+        last_multipliers.copy_from_slice(multipliers);
+        map_into(last_growths, |volume, _| self.growth(volume, positions));
+    }
+
+    /// Moves multipliers on by `c g h/τ`, and books what that stores at once, `V⁰ δλ g`.
+    fn relax(&self, positions: &[Vec3], share: f64, own: &mut [f64]) {
+        let gain = self.rules.penalty * share;
+        let Remembered { heat, multipliers, .. } = self.remembered(own);
+        *heat -= gain
+            * sum_of(self.volumes.len(), |volume| {
+                self.at_rest[volume] * self.growth(volume, positions).powi(2)
+            });
+        map_into(multipliers, |volume, multiplier| multiplier + gain * self.growth(volume, positions));
+    }
+
     /// The memory of the elastic force, and its own.
     fn split<'a>(&self, memory: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64]) {
         memory.split_at_mut(self.inner.memory_len())
@@ -337,7 +391,7 @@ impl Incompressible {
 
     /// `λ_k + c g_k` of all volumes.
     fn pulls(&self, at: &Configuration, slopes: &[Vec3], pulls: &mut Vec<f64>) {
-        let multipliers = &self.own(at.memory)[MULTIPLIERS..];
+        let multipliers = self.multipliers(at.memory);
         pulls.resize(multipliers.len(), 0.0);
         map_into(pulls, |volume, _| {
             multipliers[volume] + self.rules.penalty * self.growth_by_slopes(volume, at.positions, slopes)
@@ -458,7 +512,7 @@ impl Force for Incompressible {
     }
 
     fn memory_len(&self) -> usize {
-        self.inner.memory_len() + MULTIPLIERS + self.volumes.len()
+        self.inner.memory_len() + MULTIPLIERS + self.numbers_of_volume() * self.volumes.len()
     }
 
     fn initial_memory(&self, memory: &mut [f64]) {
@@ -482,12 +536,12 @@ impl Force for Incompressible {
         let VolumeScratch { inner, slopes, .. } = of(scratch);
         let Energy { stored, dissipated } = self.inner.energy(&self.view(at), inner);
         self.look(at.positions, slopes);
-        let own = self.own(at.memory);
+        let (heat, multipliers) = (self.own(at.memory)[HEAT], self.multipliers(at.memory));
         let of_volume = |volume: usize| {
             let g = self.growth_by_slopes(volume, at.positions, slopes);
-            self.at_rest[volume] * g * (own[MULTIPLIERS + volume] + 0.5 * self.rules.penalty * g)
+            self.at_rest[volume] * g * (multipliers[volume] + 0.5 * self.rules.penalty * g)
         };
-        Energy { stored: stored + sum_of(self.volumes.len(), of_volume), dissipated: dissipated + own[HEAT] }
+        Energy { stored: stored + sum_of(self.volumes.len(), of_volume), dissipated: dissipated + heat }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
@@ -604,7 +658,7 @@ impl Force for Incompressible {
         if off <= tolerance {
             return None;
         }
-        map_into(&mut self.split(memory).1[MULTIPLIERS..], |volume, multiplier| {
+        map_into(self.remembered(self.split(memory).1).multipliers, |volume, multiplier| {
             multiplier + self.rules.penalty * self.growth(volume, positions)
         });
         let row = self.volume_rows.of(at)[0] as usize;
@@ -612,22 +666,15 @@ impl Force for Incompressible {
     }
 
     fn ends_steps(&self) -> bool {
-        self.inner.ends_steps() || matches!(self.rules.multipliers, Multipliers::Relaxed { .. })
+        true
     }
 
     fn end_step(&self, positions: &[Vec3], timestep: f64, memory: &mut [f64]) -> bool {
         let (inner, own) = self.split(memory);
         let jumped = self.inner.ends_steps() && self.inner.end_step(positions, timestep, inner);
-        if let Multipliers::Relaxed { time } = self.rules.multipliers {
-            let gain = self.rules.penalty * timestep / time;
-            // what moves on is stored at once, V⁰ δλ g
-            own[HEAT] -= gain
-                * sum_of(self.volumes.len(), |volume| {
-                    self.at_rest[volume] * self.growth(volume, positions).powi(2)
-                });
-            map_into(&mut own[MULTIPLIERS..], |volume, multiplier| {
-                multiplier + gain * self.growth(volume, positions)
-            });
+        match self.rules.multipliers {
+            Multipliers::Solved { .. } => self.book_solved(positions, own),
+            Multipliers::Relaxed { time } => self.relax(positions, timestep / time, own),
         }
         jumped
     }
@@ -648,7 +695,7 @@ impl Force for Incompressible {
 
     fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
         let field = self.inner.cell_field_at(cell, &self.view(at))?;
-        Some(self.with_mean_stress(cell, at.positions, field, &self.own(at.memory)[MULTIPLIERS..]))
+        Some(self.with_mean_stress(cell, at.positions, field, self.multipliers(at.memory)))
     }
 
     fn rest_volume(&self, cell: usize) -> Option<f64> {
@@ -661,6 +708,10 @@ impl Force for Incompressible {
 
     fn adapted(&self, cell: usize, at: &Configuration) -> Option<Adapted> {
         self.inner.adapted(cell, &self.view(at))
+    }
+
+    fn law_changes(&self, at: &Configuration) -> Option<LawChanges> {
+        self.inner.law_changes(&self.view(at))
     }
 
     fn bytes(&self) -> usize {

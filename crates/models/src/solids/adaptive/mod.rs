@@ -15,7 +15,8 @@ use std::ops::Range;
 
 use souple_engine::state::Pair;
 use souple_engine::{
-    Adapted, CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
+    Adapted, CellField, Configuration, Curvature, Declaration, Energy, Force, LawChanges, Scratch,
+    TangentWeights,
 };
 use souple_math::{Mat3, Padded, Vec3};
 use souple_mesh::{MAX_NODES, Mesh};
@@ -116,11 +117,6 @@ impl AdaptiveForce {
         let mut first_cell = vec![0];
         chunks().for_each(|chunk| first_cell.push(first_cell[first_cell.len() - 1] + chunk.cells.len()));
         Ok(Self { solids, mesh, adaptation, rest, first_cell })
-    }
-
-    /// How often cells have changed their law.
-    pub fn switches(&self, at: &Configuration) -> f64 {
-        at.memory[self.mesh.cell_count() + 1]
     }
 
     fn laws<'a>(&self, memory: &'a [f64]) -> &'a [f64] {
@@ -434,6 +430,11 @@ impl Force for AdaptiveForce {
         let law = self.laws(at.memory).get(cell)?;
         let excess = self.excess(cell, usize::from(*law != 0.0), at.positions);
         Some(Adapted { law: *law, excess })
+    }
+
+    fn law_changes(&self, at: &Configuration) -> Option<LawChanges> {
+        let changes = at.memory.get(self.mesh.cell_count()..)?;
+        Some(LawChanges { taken: *changes.first()?, count: *changes.get(1)? })
     }
 
     fn bytes(&self) -> usize {
