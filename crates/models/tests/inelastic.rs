@@ -205,6 +205,53 @@ fn yielding_returns_to_the_threshold() {
     }
 }
 
+/// Cells of two materials and torn ones are neighbours: forces are minus the slope of the energy, which is asked for cell by cell, and the same
+/// bits for any number of threads.
+#[test]
+fn neighbours_abreast_keep_their_own() {
+    let values = Values::new()
+        .with("size", Value::Vector([0.4, 0.2, 0.2]))
+        .with("cells", Value::Vector([7.0, 3.0, 3.0]))
+        .with("element", Value::Text("tet4"));
+    let mesh = souple_mesh::generate("bar", values).unwrap();
+    let stiff = common::material_of(materials::TABLE.find("neo_hookean").unwrap(), 3.0 * YOUNG, 0.4);
+    // runs of eleven cells, which fill blocks of eight unevenly
+    let of_cell: Vec<u16> = (0..mesh.cell_count()).map(|cell| (cell / 11 % 2) as u16).collect();
+    let description = SolidDescription {
+        name: "bar".into(),
+        mesh: &mesh,
+        first_row: 0,
+        materials: &[material(), stiff],
+        material_of_cell: &of_cell,
+        axes: &[],
+        quadrature: Quadrature::Default,
+        section: Section::Solid,
+    };
+    let fracture = Fracture { stress: f64::INFINITY, strain: 0.15, scatter: 0.5, seed: 1 };
+    let rules = Inelasticity { creep_time: Some(0.1), fracture: Some(fracture), ..Inelasticity::default() };
+    let force = InelasticForce::new(&description, rules).unwrap();
+    let x: Vec<Vec3> =
+        mesh.points.iter().zip(directions(mesh.points.len())).map(|(p, d)| *p + d * 0.01).collect();
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut memory = memory(&force);
+            force.end_step(&x, 0.01, &mut memory);
+            (forces(&force, &x, &memory), memory)
+        })
+    };
+    let (f, memory) = with(1);
+    assert!(with(3) == (f.clone(), memory.clone()));
+    let is_torn = |cell: &usize| force.cell_field_at(*cell, &at(&x, &memory)).unwrap().von_mises == 0.0;
+    let torn = (0..mesh.cell_count()).filter(is_torn).count();
+    assert!(torn > 10 && torn < mesh.cell_count() - 10, "{torn}");
+    let (way, h) = (directions(x.len() + 5).split_off(5), 1e-7);
+    let shifted = |by: f64| -> Vec<Vec3> { x.iter().zip(&way).map(|(x, d)| *x + *d * by).collect() };
+    let slope = (energy(&force, &shifted(h), &memory) - energy(&force, &shifted(-h), &memory)) / (2.0 * h);
+    // as for the elements one by one
+    assert!((slope + dot(&f, &way)).abs() <= 1e-6 * norm(&f) * norm(&way), "{slope} {}", dot(&f, &way));
+}
+
 /// A cell tears at its limit, which is scattered by the seed alone, and pulls no more.
 #[test]
 fn cells_tear_at_their_limits() {

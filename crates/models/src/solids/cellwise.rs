@@ -83,12 +83,9 @@ impl Cellwise {
 
     /// Calls `work(cell, its part)` for all cells, with a part of as many as it has nodes.
     pub fn fill(&self, parts: &mut Vec<Vec3>, work: impl Fn(usize, &mut [Vec3]) + Sync) {
-        parts.resize(self.place_count(), Vec3::ZERO);
         let count = self.cell_count();
         let first_of = |chunk: usize| count.min(chunk * CELLS_PER_CHUNK);
-        let start_of = |chunk: usize| self.starts[first_of(chunk)] as usize;
-        let chunks = 0..count.div_ceil(CELLS_PER_CHUNK);
-        parallel::fill(chunks, parallel::LIGHT, parts, &start_of, &|chunk, parts| {
+        self.fill_chunks(count.div_ceil(CELLS_PER_CHUNK), first_of, parts, |chunk, parts| {
             let mut remaining = parts;
             for cell in first_of(chunk)..first_of(chunk + 1) {
                 let (own, rest) = remaining.split_at_mut(self.places(cell).len());
@@ -96,6 +93,19 @@ impl Cellwise {
                 work(cell, own);
             }
         });
+    }
+
+    /// Calls `work(chunk, the parts of its cells)` for all chunks of neighbouring cells, each of those from `first_of` it to that of the next.
+    pub fn fill_chunks(
+        &self,
+        count: usize,
+        first_of: impl Fn(usize) -> usize + Sync,
+        parts: &mut Vec<Vec3>,
+        work: impl Fn(usize, &mut [Vec3]) + Sync,
+    ) {
+        parts.resize(self.place_count(), Vec3::ZERO);
+        let start_of = |chunk: usize| self.starts[first_of(chunk)] as usize;
+        parallel::fill(0..count, parallel::LIGHT, parts, &start_of, &work);
     }
 
     /// `out[row] += Σ part` of its places, in the order of cells.

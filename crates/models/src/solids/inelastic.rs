@@ -22,6 +22,8 @@
 //! The equivalent stress of an isotropic law is no more than the threshold where the reference moves on, and may be above it elsewhere by what a step
 //! strains: take steps that strain little.
 //!
+//! Forces, and whether cells come above the threshold at all, are asked of eight cells abreast; what is above is brought back one by one.
+//!
 //! Source: Terzopoulos & Fleischer 1988, §5; Simo & Hughes 1998, §9.3 (logarithmic strain, return to the threshold).
 
 use std::any::Any;
@@ -35,9 +37,13 @@ use souple_math::{Mat3, Vec3, eigen_symmetric};
 use souple_mesh::MAX_NODES;
 use souple_solve::BlockMatrix;
 
+use super::abreast::{self, Block, Blocks, Nodal, Sample};
 use super::cellwise::Cellwise;
-use super::{FlatCell, SolidDescription, parallel};
-use crate::materials::{Material, Oriented, cauchy_stress, von_mises};
+use super::layout::LANES;
+use super::row_law::{Row, RowLaw};
+use super::turned::AXES_LEN;
+use super::{FlatCell, SolidDescription, parallel, rows_along, turned};
+use crate::materials::{Material, MaterialLaw, Oriented, PARAMETERS_MAX, cauchy_stress, von_mises};
 
 /// How the reference of a body changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,16 +85,10 @@ pub struct Fracture {
     pub seed: u64,
 }
 
-/// A point of a cell where the law is asked.
-struct Sample {
-    /// At rest [m³].
-    volume: f64,
-    /// `∇N` of each node at rest [1/m].
-    gradients: Vec<Vec3>,
-}
-
 struct Cell {
-    samples: Vec<Sample>,
+    block: usize,
+    lane: usize,
+    samples: usize,
     /// Where its samples begin in memory.
     memory: usize,
     /// What its limits of fracture are multiplied by.
@@ -101,6 +101,12 @@ const TORN: usize = 0;
 const HEAT: usize = 1;
 /// Of a sample: `F_p⁻¹` by columns, then `ε̄`.
 const SAMPLE: usize = 10;
+
+/// The most numbers that a law in lanes is told.
+const ROW_PARAMETERS: usize = if AXES_LEN > PARAMETERS_MAX { AXES_LEN } else { PARAMETERS_MAX };
+
+/// By what part of the threshold the stress of many lanes at once may be rounded otherwise than that of one sample.
+const ROUNDING: f64 = 1e-9;
 
 /// What a sample remembers.
 struct Reference {
@@ -158,8 +164,11 @@ impl Strain {
 pub struct InelasticForce {
     name: String,
     cells: Vec<Cell>,
+    blocks: Blocks,
     nodes: Cellwise,
     materials: Vec<Material>,
+    /// The same laws for the lanes of blocks.
+    rows: Vec<Box<dyn RowLaw>>,
     material_of_cell: Vec<u16>,
     axes: Vec<Mat3>,
     rules: Inelasticity,
@@ -185,7 +194,7 @@ impl InelasticForce {
         let SolidDescription { name, mesh, first_row, materials, material_of_cell, axes, quadrature, .. } =
             description;
         let mut cells = Vec::with_capacity(mesh.cell_count());
-        let mut memory = 0;
+        let (mut blocks, mut memory) = (Blocks::default(), 0);
         let mut buffer = [Vec3::ZERO; MAX_NODES];
         for (number, cell) in mesh.cells().enumerate() {
             let corners = mesh.positions_into(cell.nodes, &mut buffer);
@@ -197,20 +206,24 @@ impl InelasticForce {
                 let flat = FlatCell { kind: cell.kind, cell: number as u32, sample, determinant };
                 let inverse = inverse.ok_or(flat)?;
                 let gradients = cell.kind.shape_gradients(point.position);
-                let gradients = gradients.iter().map(|by_xi| inverse.transpose_apply(*by_xi)).collect();
-                samples.push(Sample { volume: determinant * point.weight, gradients });
+                let gradients: Vec<Vec3> =
+                    gradients.iter().map(|by_xi| inverse.transpose_apply(*by_xi)).collect();
+                samples.push((determinant * point.weight, gradients));
             }
             let strength = rules.fracture.map_or(1.0, |fracture| fracture.strength(number as u64));
-            let count = samples.len();
-            cells.push(Cell { samples, memory, strength });
-            memory += OF_CELL + SAMPLE * count;
+            let (block, lane) = blocks.push(cell.kind, usize::from(material_of_cell[number]), &samples);
+            let samples = samples.len();
+            cells.push(Cell { block, lane, samples, memory, strength });
+            memory += OF_CELL + SAMPLE * samples;
         }
         Ok(Self {
             name: name.clone(),
             cells,
+            blocks,
             nodes: Cellwise::new(mesh, *first_row),
             is_internal: materials.iter().all(|material| material.law.is_objective()),
             materials: materials.to_vec(),
+            rows: materials.iter().map(|material| rows_along(&material.law, !axes.is_empty())).collect(),
             material_of_cell: material_of_cell.to_vec(),
             axes: axes.to_vec(),
             rules,
@@ -229,12 +242,17 @@ impl InelasticForce {
     }
 
     /// `Σ x ⊗ ∇N` at a sample of a cell.
-    fn gradient(&self, cell: usize, sample: &Sample, positions: &[Vec3]) -> Mat3 {
+    fn gradient(&self, cell: usize, sample: Sample, positions: &[Vec3]) -> Mat3 {
         let mut F = Mat3::ZERO;
-        for (row, gradient) in self.nodes.rows(cell).iter().zip(&sample.gradients) {
-            F += positions[*row as usize].outer(*gradient);
+        for (row, gradient) in self.nodes.rows(cell).iter().zip(sample.gradients()) {
+            F += positions[*row as usize].outer(gradient);
         }
         F
+    }
+
+    /// The samples of a cell, torn ones too.
+    fn samples_of(&self, cell: usize) -> impl Iterator<Item = Sample<'_>> {
+        self.blocks.samples(self.cells[cell].block, self.cells[cell].lane)
     }
 
     /// The samples of a cell with `F_p⁻¹` and `F_e`; none of a torn one.
@@ -243,9 +261,9 @@ impl InelasticForce {
         number: usize,
         positions: &'a [Vec3],
         own: &'a [f64],
-    ) -> impl Iterator<Item = (&'a Sample, Mat3, Mat3)> {
-        let samples = if is_torn(own) { &[] } else { &self.cells[number].samples[..] };
-        samples.iter().zip(references(own)).map(move |(sample, reference)| {
+    ) -> impl Iterator<Item = (Sample<'a>, Mat3, Mat3)> {
+        let count = if is_torn(own) { 0 } else { self.cells[number].samples };
+        self.samples_of(number).take(count).zip(references(own)).map(move |(sample, reference)| {
             let F = self.gradient(number, sample, positions);
             (sample, reference.inverse, F * reference.inverse)
         })
@@ -254,34 +272,40 @@ impl InelasticForce {
     /// Energy of all samples of a cell [J]; none of a torn one.
     fn energy_of(&self, cell: usize, positions: &[Vec3], own: &[f64]) -> f64 {
         let law = self.law(cell);
-        self.samples(cell, positions, own).map(|(sample, _, F)| sample.volume * law.energy_density(&F)).sum()
+        self.samples(cell, positions, own)
+            .map(|(sample, _, F)| sample.volume() * law.energy_density(&F))
+            .sum()
     }
 
     /// Brings the reference of a cell that is whole on by `timestep`, and tears it where it bears too much; whether anything changed.
     fn advance(&self, number: usize, positions: &[Vec3], timestep: f64, own: &mut [f64]) -> bool {
         let (cell, law) = (&self.cells[number], self.law(number));
-        let before = self.energy_of(number, positions, own);
-        let (mut changed, mut tears) = (false, false);
-        for (sample, memory) in cell.samples.iter().zip(own[OF_CELL..].chunks_exact_mut(SAMPLE)) {
+        // asked for where something changes, before anything has
+        let mut before = None;
+        let mut tears = false;
+        for (index, sample) in self.samples_of(number).enumerate() {
             let F = self.gradient(number, sample, positions);
-            let mut reference = Reference::read(memory);
+            let memory = OF_CELL + SAMPLE * index..OF_CELL + SAMPLE * (index + 1);
+            let mut reference = Reference::read(&own[memory.clone()]);
             if self.rules.advance(&law, &F, timestep, &mut reference) {
-                reference.write(memory);
-                changed = true;
+                before.get_or_insert_with(|| self.energy_of(number, positions, own));
+                reference.write(&mut own[memory]);
             }
             tears |= self.rules.tears(&law, &(F * reference.inverse), cell.strength);
         }
-        if changed || tears {
-            own[TORN] = if tears { 1.0 } else { 0.0 };
-            own[HEAT] += before - self.energy_of(number, positions, own);
+        if tears {
+            before.get_or_insert_with(|| self.energy_of(number, positions, own));
+            own[TORN] = 1.0;
         }
-        changed | tears
+        let Some(before) = before else { return false };
+        own[HEAT] += before - self.energy_of(number, positions, own);
+        true
     }
 
     /// Tears a cell that is whole where it bears too much with what of its strain is about to go over; whether it did.
     fn tear(&self, number: usize, positions: &[Vec3], own: &mut [f64]) -> bool {
         let (cell, law) = (&self.cells[number], self.law(number));
-        let tears = cell.samples.iter().zip(references(own)).any(|(sample, mut reference)| {
+        let tears = self.samples_of(number).zip(references(own)).any(|(sample, mut reference)| {
             let F = self.gradient(number, sample, positions);
             self.rules.advance(&law, &F, 0.0, &mut reference);
             self.rules.tears(&law, &(F * reference.inverse), cell.strength)
@@ -293,16 +317,150 @@ impl InelasticForce {
         tears
     }
 
-    /// Calls `change` with every cell that is whole and its memory; whether any changed.
-    fn change(&self, memory: &mut [f64], change: impl Fn(usize, &mut [f64]) -> bool + Sync) -> bool {
+    /// Calls `change` with every cell that is whole, among those that `candidates` tells of each block, and its memory; whether any changed.
+    fn change(
+        &self,
+        memory: &mut [f64],
+        candidates: impl Fn(&Block, &[f64]) -> [bool; LANES] + Sync,
+        change: impl Fn(usize, &mut [f64]) -> bool + Sync,
+    ) -> bool {
         let changed = AtomicBool::new(false);
-        let start_of = |cell: usize| self.cells.get(cell).map_or(self.memory_len, |cell| cell.memory);
-        parallel::fill(0..self.cells.len(), parallel::LIGHT, memory, &start_of, &|cell, own| {
-            if !is_torn(own) && change(cell, own) {
-                changed.store(true, Ordering::Relaxed);
+        let blocks = self.blocks.all();
+        let start_of = |block: usize| {
+            blocks.get(block).map_or(self.memory_len, |block| self.cells[block.cells.start].memory)
+        };
+        parallel::fill(0..blocks.len(), parallel::LIGHT, memory, &start_of, &|block, memory| {
+            let is_candidate = candidates(&blocks[block], memory);
+            let lens = blocks[block].cells.clone().map(|cell| self.cells[cell].memory_len());
+            let mut remaining = memory;
+            for ((cell, len), is_candidate) in blocks[block].cells.clone().zip(lens).zip(is_candidate) {
+                let (own, rest) = remaining.split_at_mut(len);
+                remaining = rest;
+                if is_candidate && !is_torn(own) && change(cell, own) {
+                    changed.store(true, Ordering::Relaxed);
+                }
             }
         });
         changed.into_inner()
+    }
+
+    /// Positions of the `N` nodes at most of a block.
+    fn gathered<const N: usize>(&self, block: &Block, positions: &[Vec3]) -> [Nodal; N] {
+        let mut out = [abreast::NODAL_ZERO; N];
+        for (lane, cell) in block.cells.clone().enumerate() {
+            for (node, row) in out.iter_mut().zip(self.nodes.rows(cell)) {
+                let x = positions[*row as usize];
+                (node[0][lane], node[1][lane], node[2][lane]) = (x.x, x.y, x.z);
+            }
+        }
+        out
+    }
+
+    /// `F_p⁻¹` and `ε̄` at a sample of a block, whose memory is given; those of rest in lanes past its last cell.
+    fn remembered(block: &Block, sample: usize, memory: &[f64]) -> (Row, [f64; LANES]) {
+        let (mut inverse, mut yielded) = (abreast::ZERO, [0.0; LANES]);
+        for diagonal in [0, 4, 8] {
+            inverse[diagonal] = [1.0; LANES];
+        }
+        let of_cells = memory.chunks_exact(OF_CELL + SAMPLE * block.samples);
+        for (lane, own) in of_cells.enumerate() {
+            let own = &own[OF_CELL + SAMPLE * sample..][..SAMPLE];
+            inverse.iter_mut().zip(own).for_each(|(entry, number)| entry[lane] = *number);
+            yielded[lane] = own[9];
+        }
+        (inverse, yielded)
+    }
+
+    /// What the law of a block is told of its lanes, `[number][lane]`.
+    fn parameters(&self, block: &Block) -> [f64; ROW_PARAMETERS * LANES] {
+        let mut out = [0.0; ROW_PARAMETERS * LANES];
+        let material = &self.materials[block.material];
+        if let MaterialLaw::Known(_) = material.law {
+            let of_numbers = out.chunks_exact_mut(LANES).zip(material.parameters);
+            of_numbers.for_each(|(lanes, number)| lanes.fill(number));
+            return out;
+        }
+        // numbers of laws as text are in their programs: they are told of axes alone
+        for (lane, axes) in self.axes.iter().skip(block.cells.start).take(block.cells.len()).enumerate() {
+            for (i, number) in turned::numbers(axes).into_iter().enumerate() {
+                out[i * LANES + lane] = number;
+            }
+        }
+        out
+    }
+
+    /// The memory of the cells of a block.
+    fn memory_of_block<'a>(&self, block: &Block, memory: &'a [f64]) -> &'a [f64] {
+        let first = &self.cells[block.cells.start];
+        &memory[first.memory..][..block.cells.len() * first.memory_len()]
+    }
+
+    /// On the nodes of the cells of a block.
+    fn forces_of(&self, block: &Block, at: &Configuration, parts: &mut [Vec3]) {
+        // no more is cleared for a block than its kind needs
+        match block.nodes {
+            ..=4 => self.forces_within::<4>(block, at, parts),
+            5..=8 => self.forces_within::<8>(block, at, parts),
+            _ => self.forces_within::<MAX_NODES>(block, at, parts),
+        }
+    }
+
+    fn forces_within<const N: usize>(&self, block: &Block, at: &Configuration, parts: &mut [Vec3]) {
+        let positions = self.gathered::<N>(block, at.positions);
+        let (law, parameters) = (&self.rows[block.material], self.parameters(block));
+        let memory = self.memory_of_block(block, at.memory);
+        let mut forces = [abreast::NODAL_ZERO; N];
+        for sample in 0..block.samples {
+            let (inverse, _) = Self::remembered(block, sample, memory);
+            let F = self.blocks.deform(block, sample, &positions[..block.nodes], &inverse);
+            let stress = law.stress(&parameters, &F);
+            self.blocks.pull(block, sample, &stress, &inverse, &mut forces[..block.nodes]);
+        }
+        let of_cells = memory.chunks_exact(OF_CELL + SAMPLE * block.samples);
+        for (lane, (own, parts)) in of_cells.zip(parts.chunks_exact_mut(block.nodes)).enumerate() {
+            let of_node = |force: &Nodal| match is_torn(own) {
+                true => Vec3::ZERO,
+                false => Vec3::from_array(force.map(|axis| axis[lane])),
+            };
+            parts.iter_mut().zip(&forces).for_each(|(part, force)| *part = of_node(force));
+        }
+    }
+
+    /// Which cells of a block, whose memory is given, may change where a step ends: where nothing but yielding changes them, those with a
+    /// sample above the threshold, to rounding, or of no finite stress.
+    fn candidates(&self, block: &Block, positions: &[Vec3], memory: &[f64]) -> [bool; LANES] {
+        let Inelasticity { creep_time: None, fracture: None, yielding: Some(yielding) } = self.rules else {
+            return [true; LANES];
+        };
+        match block.nodes {
+            ..=4 => self.exceeding::<4>(yielding, block, positions, memory),
+            5..=8 => self.exceeding::<8>(yielding, block, positions, memory),
+            _ => self.exceeding::<MAX_NODES>(yielding, block, positions, memory),
+        }
+    }
+
+    /// Which cells of a block have a sample above the threshold.
+    fn exceeding<const N: usize>(
+        &self,
+        yielding: Yielding,
+        block: &Block,
+        positions: &[Vec3],
+        memory: &[f64],
+    ) -> [bool; LANES] {
+        let positions = self.gathered::<N>(block, positions);
+        let (law, parameters) = (&self.rows[block.material], self.parameters(block));
+        let mut found = [false; LANES];
+        for sample in 0..block.samples {
+            let (inverse, yielded) = Self::remembered(block, sample, memory);
+            let F = self.blocks.deform(block, sample, &positions[..block.nodes], &inverse);
+            let stress = abreast::equivalent_stress(&law.stress(&parameters, &F), &F);
+            for lane in 0..LANES {
+                let threshold = yielding.stress + yielding.hardening * yielded[lane];
+                // what is no number is looked at
+                found[lane] |= stress[lane].is_nan() || stress[lane] > threshold * (1.0 - ROUNDING);
+            }
+        }
+        found
     }
 
     /// Whether any were turned round.
@@ -320,10 +478,10 @@ impl InelasticForce {
         self.nodes.add_blocks(curvature, &mut of(scratch).blocks, matrix, |cell, blocks| {
             let (law, nodes) = (self.law(cell), self.nodes.rows(cell).len());
             for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
-                let scale = -scale * sample.volume;
+                let scale = -scale * sample.volume();
                 let mut gradients = [Vec3::ZERO; MAX_NODES];
-                for (changed, gradient) in gradients.iter_mut().zip(&sample.gradients) {
-                    *changed = inverse.transpose_apply(*gradient);
+                for (changed, gradient) in gradients.iter_mut().zip(sample.gradients()) {
+                    *changed = inverse.transpose_apply(gradient);
                 }
                 for (b, column) in gradients[..nodes].iter().enumerate() {
                     let changes =
@@ -340,7 +498,7 @@ impl InelasticForce {
 
 impl Cell {
     fn memory_len(&self) -> usize {
-        OF_CELL + SAMPLE * self.samples.len()
+        OF_CELL + SAMPLE * self.samples
     }
 }
 
@@ -366,11 +524,23 @@ impl Fracture {
     }
 
     fn is_exceeded(&self, law: &Oriented, F: &Mat3, strength: f64) -> bool {
-        let stretch = eigen_symmetric(&F.gram()).values.largest_component().sqrt();
-        let pull = cauchy_stress(&law.stress(F), F)
-            .map_or(0.0, |stress| eigen_symmetric(&stress).values.to_array().into_iter().fold(0.0, f64::max));
-        stretch - 1.0 > self.strain * strength || pull > self.stress * strength
+        let stretch = 1.0 + self.strain * strength;
+        let pulls = || {
+            let stress = cauchy_stress(&law.stress(F), F);
+            stress.is_some_and(|stress| has_value_above(&stress, self.stress * strength))
+        };
+        has_value_above(&F.gram(), stretch * stretch) || (self.stress.is_finite() && pulls())
     }
+}
+
+/// Whether a symmetric matrix has an eigenvalue above a limit.
+fn has_value_above(matrix: &Mat3, limit: f64) -> bool {
+    // none is farther from their mean than by √(2/3) of the deviator
+    let mean = matrix.trace() / 3.0;
+    let deviator = matrix.plus_diagonal(-mean);
+    let most = mean + (2.0 / 3.0 * deviator.dot(&deviator)).sqrt();
+    // what is no number is looked at
+    (most.is_nan() || most > limit) && eigen_symmetric(matrix).values.largest_component() > limit
 }
 
 /// Equivalent stress of an elastic deformation [Pa].
@@ -382,15 +552,16 @@ fn equivalent_stress(law: &Oriented, F: &Mat3) -> f64 {
 const HALVINGS: usize = 53;
 
 impl Yielding {
-    /// The share of the elastic strain of shape that goes into the reference.
+    fn is_exceeded(&self, law: &Oriented, F: &Mat3, yielded: f64) -> bool {
+        equivalent_stress(law, F) > self.stress + self.hardening * yielded
+    }
+
+    /// The share of the elastic strain of shape that goes into the reference where the threshold is exceeded.
     fn share(&self, law: &Oriented, F: &Mat3, strain: &Strain, yielded: f64) -> f64 {
         let excess = |share: f64| {
             let threshold = self.stress + self.hardening * (yielded + share * strain.equivalent());
             equivalent_stress(law, &(*F * strain.exponential(-share))) - threshold
         };
-        if excess(0.0) <= 0.0 {
-            return 0.0;
-        }
         if self.amount == Amount::Whole {
             return 1.0;
         }
@@ -419,6 +590,9 @@ impl Inelasticity {
         }
         if let Some(yielding) = self.yielding {
             let elastic = *F * reference.inverse;
+            if !yielding.is_exceeded(law, &elastic, reference.yielded) {
+                return changed;
+            }
             let Some(strain) = Strain::of(&elastic) else { return changed };
             let share = yielding.share(law, &elastic, &strain, reference.yielded);
             if share > 0.0 {
@@ -454,9 +628,7 @@ impl Force for InelasticForce {
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
         for cell in &self.cells {
-            for sample in
-                memory[cell.memory + OF_CELL..][..SAMPLE * cell.samples.len()].chunks_exact_mut(SAMPLE)
-            {
+            for sample in memory[cell.memory + OF_CELL..][..SAMPLE * cell.samples].chunks_exact_mut(SAMPLE) {
                 Reference::REST.write(sample);
             }
         }
@@ -477,16 +649,10 @@ impl Force for InelasticForce {
     // f_a = -Σ V P(F_e) F_p⁻ᵀ ∇N_a
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
         let parts = &mut of(scratch).parts;
-        self.nodes.fill(parts, |cell, parts| {
-            let law = self.law(cell);
-            parts.fill(Vec3::ZERO);
-            for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
-                let stress = law.stress(&F).mul_transpose(&inverse) * sample.volume;
-                parts
-                    .iter_mut()
-                    .zip(&sample.gradients)
-                    .for_each(|(part, gradient)| *part -= stress * *gradient);
-            }
+        let blocks = self.blocks.all();
+        let first_of = |block: usize| blocks.get(block).map_or(self.cells.len(), |block| block.cells.start);
+        self.nodes.fill_chunks(blocks.len(), first_of, parts, |block, parts| {
+            self.forces_of(&blocks[block], at, parts);
         });
         self.nodes.gather(parts, out);
     }
@@ -509,11 +675,11 @@ impl Force for InelasticForce {
             for (sample, inverse, F) in self.samples(cell, at.positions, self.memory_of(cell, at.memory)) {
                 let dF = self.gradient(cell, sample, delta) * inverse;
                 let change = law.stress_differential(&F, &dF).mul_transpose(&inverse);
-                let change = change * (sample.volume * weights.position);
+                let change = change * (sample.volume() * weights.position);
                 parts
                     .iter_mut()
-                    .zip(&sample.gradients)
-                    .for_each(|(part, gradient)| *part -= change * *gradient);
+                    .zip(sample.gradients())
+                    .for_each(|(part, gradient)| *part -= change * gradient);
             }
         });
         self.nodes.gather(parts, out);
@@ -549,7 +715,8 @@ impl Force for InelasticForce {
     }
 
     fn give_way(&self, at: &Configuration, memory: &mut [f64]) -> bool {
-        self.rules.fracture.is_some() && self.change(memory, |cell, own| self.tear(cell, at.positions, own))
+        self.rules.fracture.is_some()
+            && self.change(memory, |_, _| [true; LANES], |cell, own| self.tear(cell, at.positions, own))
     }
 
     fn ends_steps(&self) -> bool {
@@ -557,13 +724,18 @@ impl Force for InelasticForce {
     }
 
     fn end_step(&self, positions: &[Vec3], timestep: f64, memory: &mut [f64]) -> bool {
-        self.change(memory, |cell, own| self.advance(cell, positions, timestep, own))
+        self.change(
+            memory,
+            |block, memory| self.candidates(block, positions, memory),
+            |cell, own| self.advance(cell, positions, timestep, own),
+        )
     }
 
     fn bytes(&self) -> usize {
-        let of_sample = |sample: &Sample| size_of::<Sample>() + size_of_val(sample.gradients.as_slice());
-        let of_cell = |cell: &Cell| size_of::<Cell>() + cell.samples.iter().map(of_sample).sum::<usize>();
-        self.nodes.bytes() + self.cells.iter().map(of_cell).sum::<usize>() + 2 * self.material_of_cell.len()
+        self.nodes.bytes()
+            + self.blocks.bytes()
+            + size_of_val(self.cells.as_slice())
+            + 2 * self.material_of_cell.len()
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
@@ -585,7 +757,7 @@ impl Force for InelasticForce {
     }
 
     fn rest_volume(&self, cell: usize) -> Option<f64> {
-        Some(self.cells.get(cell)?.samples.iter().map(|sample| sample.volume).sum())
+        (cell < self.cells.len()).then(|| self.samples_of(cell).map(Sample::volume).sum())
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -601,15 +773,14 @@ impl InelasticForce {
         positions: &[Vec3],
         reference: impl Fn(usize) -> Option<Reference>,
     ) -> Option<CellField> {
-        let cell = self.cells.get(number)?;
+        let volume = self.rest_volume(number)?;
         let law = self.law(number);
-        let volume: f64 = cell.samples.iter().map(|sample| sample.volume).sum();
         let (mut F, mut stress, mut cauchy) = (Mat3::ZERO, Mat3::ZERO, Mat3::ZERO);
         let (mut energy, mut current) = (0.0, 0.0);
-        for (index, sample) in cell.samples.iter().enumerate() {
-            let share = sample.volume / volume;
+        for (index, sample) in self.samples_of(number).enumerate() {
+            let share = sample.volume() / volume;
             let own = self.gradient(number, sample, positions);
-            (F, current) = (F + own * share, current + sample.volume * own.determinant());
+            (F, current) = (F + own * share, current + sample.volume() * own.determinant());
             let Some(Reference { inverse, .. }) = reference(index) else { continue };
             let elastic = own * inverse;
             let of_law = law.stress(&elastic);

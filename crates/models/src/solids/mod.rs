@@ -1,5 +1,6 @@
 //! Solids: finite elements of any kind and law, mixed in one body; plane bodies, membranes and bars with them.
 
+mod abreast;
 mod adaptive;
 mod assembly;
 mod bending;
