@@ -151,6 +151,8 @@ struct Done {
     pressures: Vec<f64>,
     /// Greatest of what touches it [W/m²].
     heated: Vec<f64>,
+    /// Pressure at which the sharpest of what touches it tears its vessels [Pa].
+    tears_at: Vec<f64>,
     /// Whether something tears it.
     torn: Vec<bool>,
     /// Of each triangle, outward, as it stands [m²].
@@ -278,7 +280,7 @@ impl Marks {
         self.measure(&rows.of(self.system).positions, time, done);
         done.pressures.fill(0.0);
         done.heated.fill(0.0);
-        done.torn.fill(false);
+        done.tears_at.fill(f64::INFINITY);
         let usual = self.law.bleeding.map_or(f64::INFINITY, |law| law.pressure);
         rows.visit_contacts(self.system, &mut |contact, point| {
             let tool = self.tools.iter().find(|tool| tool.contact == contact);
@@ -292,11 +294,15 @@ impl Marks {
                 let pressure = if facing > 0.0 { force.length() / facing } else { 0.0 };
                 done.pressures[node] += pressure;
                 done.heated[node] = heat.max(done.heated[node]);
-                done.torn[node] |= self.bleeds() && done.pressures[node] >= tears_at;
+                done.tears_at[node] = tears_at.min(done.tears_at[node]);
             };
             touch(point.row, point.normal_force);
             point.against.iter().for_each(|(row, share)| touch(*row, -point.normal_force * *share));
         });
+        // all that presses it drives the sharpest in
+        let reached =
+            done.pressures.iter().zip(&done.tears_at).map(|(pressure, tears_at)| pressure >= tears_at);
+        done.torn.iter_mut().zip(reached).for_each(|(torn, reached)| *torn = self.bleeds() && reached);
     }
 
     /// Tears the vessels of what is cut in a period, from its start to before its end [s].
@@ -325,6 +331,11 @@ impl Marks {
         let (film, open) = blood.split_at_mut(count);
         self.cut(step, done);
         for (node, (film, open)) in film.iter_mut().zip(open.iter_mut()).enumerate() {
+            if done.areas[node] <= 0.0 {
+                // its last triangle has gone, and with it what lay there
+                (*film, *open) = (0.0, 0.0);
+                continue;
+            }
             if done.torn[node] {
                 *open = 1.0;
             }
@@ -375,6 +386,7 @@ impl Field for Kept {
         Box::new(Done {
             pressures: vec![0.0; nodes],
             heated: vec![0.0; nodes],
+            tears_at: vec![f64::INFINITY; nodes],
             torn: vec![false; nodes],
             area_vectors: vec![Vec3::ZERO; triangles],
             areas: vec![0.0; nodes],
@@ -405,12 +417,14 @@ impl Field for Kept {
 
     fn bytes(&self, scratch: &Scratch) -> usize {
         let Marks { points, node_of_point, triangles, spans, around, starts, areas, .. } = &*self.0;
-        let constant = 4 * (points.capacity() + around.capacity() + starts.capacity())
+        let gashes: usize = self.0.gashes.iter().map(|gash| 4 * gash.points.capacity()).sum();
+        let constant = gashes
+            + 4 * (points.capacity() + around.capacity() + starts.capacity())
             + 8 * (node_of_point.capacity() + areas.capacity())
             + 12 * triangles.capacity()
             + size_of::<Span>() * spans.capacity();
         let of_scratch = scratch.downcast_ref::<Done>().map_or(0, |done| {
-            25 * done.pressures.capacity() + 24 * done.area_vectors.capacity() + done.running.bytes()
+            33 * done.pressures.capacity() + 24 * done.area_vectors.capacity() + done.running.bytes()
         });
         constant + of_scratch
     }

@@ -266,6 +266,7 @@ pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
 pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
     let mut mesh = Mesh { points: info.points(world), ..Mesh::default() };
     let triangles = info.dress.triangles(world.time());
+    gather_loose(&mut mesh.points, &triangles);
     triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
     let normals = souple_mesh::vertex_normals(&mesh.points, &triangles);
     let moved = mesh.points.iter().zip(info.dress.rest()).map(|(x, rest)| *x - *rest);
@@ -281,6 +282,14 @@ pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
         fields_of_marks(mesh.points.len(), carried.marks.marks.bleeds(), mark, look)
     }));
     (mesh, fields)
+}
+
+/// Puts points of no triangle, which hang on what has been cut away, where the first one of a triangle is.
+fn gather_loose(points: &mut [Vec3], triangles: &[[u32; 3]]) {
+    let Some(there) = triangles.first().map(|corners| points[corners[0] as usize]) else { return };
+    let mut is_held = vec![false; points.len()];
+    triangles.iter().flatten().for_each(|corner| is_held[*corner as usize] = true);
+    points.iter_mut().zip(is_held).filter(|(_, is_held)| !is_held).for_each(|(point, _)| *point = there);
 }
 
 /// What points of all bodies have.

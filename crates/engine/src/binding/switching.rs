@@ -121,8 +121,7 @@ impl ConstraintSolver {
         Ok(!self.wrong.is_empty())
     }
 
-    /// Lets relations that are on the wrong side give way, or hold again: all of them as long as they get fewer, else one by one by the least number, as in
-    /// principal pivoting by blocks (Júdice & Pires 1994; Murty 1974).
+    /// Lets relations that are on the wrong side give way, or hold again: all of them as long as they get fewer, else one by one by the least number.
     pub(super) fn switch(
         &mut self,
         step: &Step,

@@ -94,7 +94,7 @@ fn noise(place: Vec3) -> f64 {
     let mut sum = 0.0;
     for corner in 0..8 {
         let at = [0, 1, 2].map(|axis: usize| (corner >> axis) & 1);
-        let [i, j, k] = [0, 1, 2].map(|axis: usize| (low[axis] as i64 + at[axis]) as u32);
+        let [i, j, k] = [0, 1, 2].map(|axis: usize| (low[axis] as i64).wrapping_add(at[axis]) as u32);
         let [x, y, z] = [0, 1, 2].map(|axis: usize| within[axis] - at[axis] as f64);
         let weight: f64 =
             (0..3).map(|axis| if at[axis] == 1 { fade[axis] } else { 1.0 - fade[axis] }).product();

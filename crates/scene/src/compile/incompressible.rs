@@ -92,7 +92,7 @@ fn multipliers(
         let message = format!(
             "multipliers that take over in {time} s would make the volume of body `{name}` swing ever wider: its `rayleigh_mass` damps by {damping}/s"
         );
-        return refuse(message, &format!("`rayleigh_mass` of more than {}/s, or more `time`", 1.0 / time));
+        return refuse(message, &format!("`rayleigh_mass` of at least {}/s, or more `time`", 1.0 / time));
     }
     Some(Multipliers::Relaxed { time })
 }

@@ -118,20 +118,20 @@ fn marks(draft: &Draft, body: &Placed) -> Option<Marks> {
 /// What cuts leave of a body along them: points of cells that are cut which others that are not cut, or later, have too.
 fn gashes(draft: &Draft, body: &Placed) -> Vec<Gash> {
     let cut_at = cut_at(draft, body);
-    let mut first = vec![f64::INFINITY; body.mesh.points.len()];
-    let mut last = vec![f64::NEG_INFINITY; body.mesh.points.len()];
-    for (cell, time) in body.mesh.cells().zip(&cut_at) {
-        for node in cell.nodes {
-            first[*node as usize] = time.min(first[*node as usize]);
-            last[*node as usize] = time.max(last[*node as usize]);
-        }
-    }
-    let mut times: Vec<f64> = cut_at.into_iter().filter(|time| time.is_finite()).collect();
+    let point_count = body.mesh.points.len();
+    let of_cells = |is_taken: &dyn Fn(f64) -> bool| {
+        let mut has = vec![false; point_count];
+        let taken = body.mesh.cells().zip(&cut_at).filter(|(_, time)| is_taken(**time));
+        taken.for_each(|(cell, _)| cell.nodes.iter().for_each(|node| has[*node as usize] = true));
+        has
+    };
+    let mut times: Vec<f64> = cut_at.iter().copied().filter(|time| time.is_finite()).collect();
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     let of_time = |time: f64| {
-        let is_along = |point: &u32| first[*point as usize] == time && last[*point as usize] > time;
-        Gash { time, points: (0..first.len() as u32).filter(is_along).collect() }
+        let (go, stay) = (of_cells(&|date| date == time), of_cells(&|date| date > time));
+        let is_along = |point: &u32| go[*point as usize] && stay[*point as usize];
+        Gash { time, points: (0..point_count as u32).filter(is_along).collect() }
     };
     times.into_iter().map(of_time).collect()
 }

@@ -28,7 +28,7 @@ pub(crate) static INCOMPRESSIBLE: Keys = Keys::new(
             "time",
             "s",
             Range::POSITIVE,
-            "in which multipliers take over under explicit steppers, longer than that in which the body's `rayleigh_mass` damps",
+            "in which multipliers take over under explicit steppers, at least that in which the body's `rayleigh_mass` damps",
         ),
         Key::new(
             "pressures",

@@ -96,7 +96,8 @@ fn colours(reader: &Reader) -> Option<[Colour; 2]> {
 
 /// `#rrggbb`.
 fn colour(text: &str) -> Option<Colour> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+    digits.bytes().all(|byte| byte.is_ascii_hexdigit()).then_some(())?;
     let part = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).ok();
     Some(Colour::from_screen([part(0)?, part(2)?, part(4)?]))
 }

@@ -145,9 +145,6 @@ const CUT: Case = Case {
 /// Of the block whose upper half is cut off, and of the one that was made without it.
 const TOUCHED: Case = Case { scene: "cut_touched", mutation: "bodies.cut.levels.cuts[0].time=99", ..CUT };
 
-/// Without weight, which points beside the cut have of the cells that are gone.
-const WEIGHTLESS: &str = "world.gravity=[0, 0, 0]";
-
 /// Small loads on the bar, whose upper half is cut at the start.
 macro_rules! half_cut {
     ($fixed:literal $(; $more:literal)?) => {
@@ -479,27 +476,6 @@ pub(super) const CASES: &[Case] = &[
         ..TOUCHED
     },
     Case {
-        id: "cut_touch_as_made",
-        what: "how hard the finger presses on the face that a cut has opened, over how hard on that of a block made so",
-        settings: &[WEIGHTLESS],
-        reading: Reading::Ratio { of: "pressed", to: "pressed_made", component: 2 },
-        reference: 1.0,
-        // what its halt at 0.45 s leaves in motion falls as exp(-α t/2) with α = 20/s: to exp(-5.5)
-        tolerance: Tolerance::Absolute(0.004),
-        source: "the same cells, at rest under the same finger",
-        ..TOUCHED
-    },
-    Case {
-        id: "cut_touch_as_made_late",
-        what: "the same, detected one period late",
-        settings: &[WEIGHTLESS, "world.collisions=\"one_period_late\""],
-        reading: Reading::Ratio { of: "pressed", to: "pressed_made", component: 2 },
-        reference: 1.0,
-        tolerance: Tolerance::Absolute(0.004),
-        source: "the same cells, at rest under the same finger",
-        ..TOUCHED
-    },
-    Case {
         id: "cut_touch_weight",
         what: "what bears a die that has fallen on the face that a cut has opened",
         reading: Reading::component("carried", 2),
@@ -514,8 +490,9 @@ pub(super) const CASES: &[Case] = &[
         what: "how far a die falls with the lid of the block under it",
         reading: Reading::component("die", 2),
         reference: -0.0201,
-        // m g over the stiffness of two of its four lower points, and what the lower half sags
-        tolerance: Tolerance::Absolute(2e-4),
+        // m g over the stiffness of two of its four lower points, 98 µm; the sag `ρ g h² / 2E` of the lower half, 98 µm, and 49 µm by what
+        // points of the face keep of the cells that are gone; and under the die less than the 196 µm of a column as wide
+        tolerance: Tolerance::Absolute(4.5e-4),
         source: "its gap of 0.1 mm, and the height of what was cut off",
         ..TOUCHED
     },

@@ -26,6 +26,9 @@ const BLEEDING: Case = Case {
 
 /// Wounds that are closed as soon as the blade has left them.
 const CLOTTED: &str = "bodies.liver.marks.bleeding.clotting_time=0.01";
+/// A tenth of a millimetre in what is left of time, none of which clings.
+const GUSHES: &str = "bodies.liver.marks.bleeding.rate=0.01";
+const RUNS: &str = "bodies.liver.marks.bleeding.clinging=0";
 const NEVER_DRY: &str = "bodies.liver.marks.bleeding.drying_time=1e14";
 
 pub(super) const CASES: &[Case] = &[
@@ -86,7 +89,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "blood_is_kept",
         what: "volume of the blood at the end over that 1.5 s before, while it runs down and no wound is open: no volume is made or lost",
-        settings: &[CLOTTED, NEVER_DRY],
+        settings: &[CLOTTED, NEVER_DRY, GUSHES, RUNS],
         reading: Reading::last("blood").taking(Statistic::LastOver(250)).after(400),
         reference: 1.0,
         mutation: "bodies.liver.marks.bleeding.drying_time=1e6",
@@ -95,7 +98,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "blood_dries",
         what: "the same where it dries in 2 s, whatever runs",
-        settings: &[CLOTTED, "bodies.liver.marks.bleeding.drying_time=2"],
+        settings: &[CLOTTED, GUSHES, RUNS, "bodies.liver.marks.bleeding.drying_time=2"],
         reading: Reading::last("blood").taking(Statistic::LastOver(250)).after(400),
         // exp(-0.75)
         reference: 0.472_366_552_741_014_7,

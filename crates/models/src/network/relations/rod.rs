@@ -44,7 +44,7 @@ impl Relation for Rod {
 
     fn is_lost_between(&self, from: &[Vec3], to: &[Vec3]) -> Option<&'static str> {
         (self.apart(from).dot(self.apart(to)) <= 0.0).then_some(
-            "gives way until its ends meet, where it has no direction: keep them apart, or let it bear more",
+            "gives way until its ends meet, where it has no direction, or turns by a quarter within a step: keep them apart, let it bear more, or take smaller steps",
         )
     }
 
