@@ -25,13 +25,13 @@ pub mod spec;
 mod values;
 
 pub use adjust::Adjustable;
-pub use compile::{FillInfo, LawInfo, NetworkInfo};
+pub use compile::{FillInfo, LawInfo, NetworkInfo, NumberOfMass, StateSpace};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use ground::grounds;
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
 pub use scene::{
-    BodyInfo, CarriedMarks, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, MarksInfo, PlannedControl,
+    BodyInfo, CarriedMarks, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, MarksInfo, Planned, PlannedControl,
     ReducedInfo, Scene, SkinInfo, read_again, read_file, read_file_to_plan, read_file_with_carriers,
     read_spec, read_text, read_text_with_files,
 };

@@ -22,7 +22,7 @@ use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
 use crate::adjust::Adjustable;
-use crate::compile::{BodyMaterials, NetworkInfo, OwnRows, Placed, compile};
+use crate::compile::{BodyMaterials, NetworkInfo, NumberOfMass, OwnRows, Placed, StateSpace, compile};
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
@@ -31,7 +31,7 @@ use crate::measure::{ContourInfo, ProbeInfo, Workload};
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::control::{Drives, VARIABLES};
+use crate::spec::control::Drives;
 use crate::spec::expect::Expect;
 use crate::spec::picture::PictureView;
 use crate::spec::sound::Sound;
@@ -536,7 +536,7 @@ pub fn read_file_with_carriers(
 }
 
 /// A control whose commands are planned.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct PlannedControl {
     /// `BODY.CONTROL`
     pub name: String,
@@ -548,6 +548,23 @@ pub struct PlannedControl {
     pub body: String,
     pub system: usize,
     pub rows: Range<usize>,
+    pub by: Planned,
+}
+
+impl PlannedControl {
+    /// The number that is called `BODY[MASS].x`, or `BODY[MASS].v.x` of a velocity, of a mass of its network.
+    pub fn number(&self, name: &str) -> Option<NumberOfMass> {
+        crate::compile::number_of(&self.body, &self.rows, name)
+    }
+}
+
+/// What commands of a control are planned by.
+#[derive(Clone, Debug)]
+pub enum Planned {
+    /// The time.
+    Time,
+    /// The state of its network.
+    State(StateSpace),
 }
 
 /// The same without the files of planned commands, which there need not be yet, and the controls that would read them: they command nothing.
@@ -563,10 +580,15 @@ pub fn read_file_to_plan(
         for body in &mut spec.bodies {
             let Some(network) = &mut body.network else { continue };
             for index in 0..network.controls.len() {
-                let control = &network.controls[index];
-                if !matches!(control.drives, Some(Drives::Plan { .. })) {
-                    continue;
+                let control = &mut network.controls[index];
+                match &mut control.drives {
+                    Some(Drives::Plan { .. }) => {
+                        control.drives = Some(Drives::Command(Formula::constant(0.0)));
+                    }
+                    Some(Drives::Table { file, .. }) => *file = None,
+                    _ => continue,
                 }
+                let control = &network.controls[index];
                 planned.push(PlannedControl {
                     name: format!("{}.{}", body.name, control.name),
                     driven: 0,
@@ -574,8 +596,8 @@ pub fn read_file_to_plan(
                     body: body.name.clone(),
                     system: 0,
                     rows: 0..0,
+                    by: Planned::Time,
                 });
-                network.controls[index].drives = Formula::compile("0", &VARIABLES).ok().map(Drives::Command);
             }
         }
     };
@@ -585,6 +607,10 @@ pub fn read_file_to_plan(
         control.driven = found.map_or(0, |found| found.driven());
         if let Some(body) = scene.bodies.iter().find(|body| body.name == control.body) {
             (control.system, control.rows) = (body.system, body.rows.clone());
+        }
+        let mut spaces = scene.networks.iter().flat_map(|network| &network.state_spaces);
+        if let Some(space) = spaces.find(|space| space.control == control.name) {
+            control.by = Planned::State(space.clone());
         }
     }
     Ok((scene, planned))

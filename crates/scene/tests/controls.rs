@@ -294,7 +294,7 @@ fn wrong_actuators_are_refused() {
     refused(&of("actuator = \"engine\"\nvalue = \"1\""), &["no actuators `engine`", "motor"]);
     refused(
         &of("actuator = \"motor\"\nconnects = \"t < 1\""),
-        &["commands an actuator", "value or plan, alone"],
+        &["commands an actuator", "value, plan or table, alone"],
     );
     refused(&of("actuator = \"motor\"\nlinks = \"band\"\nvalue = \"1\""), &["drives several things"]);
 }
@@ -374,4 +374,56 @@ fn gains_answer_to_deviations() {
     let idle = text.replace("plan = \"a.csv\"", "value = \"1\"\nfeedback = true");
     let message = read(&idle, &plan).err().expect("a refusal").to_string();
     assert!(message.contains("has no plan"), "{message}");
+}
+
+/// Commands of a table act by the state that a control reads, between entries by straight lines; what is wrong with a table is said with its line.
+#[test]
+fn tables_are_read() {
+    let text = "format = 1\n[world]\nperiod = \"10 ms\"\n[systems.main]\nstepper = \"verlet\"\n\
+        [networks.n.masses.cart]\npositions = [[0.25, 0, 0]]\nmass = 2\nvelocity = [1, 0, 0]\n\
+        [networks.n.actuators.motor]\nof = \"cart\"\ndirection = [1, 0, 0]\nlargest = 6\n\
+        [networks.n.controls.drive]\nactuator = \"motor\"\ntable = \"a.csv\"\n\
+        inputs.x = { of = \"cart\", quantity = \"position\", component = \"x\" }\n\
+        inputs.v = { of = \"cart\", quantity = \"velocity\", component = \"x\" }\n";
+    let read = |text: &str, table: &str| read_text_with_files("net.toml", text, &[("a.csv", table)], &[]);
+    let speed_after = |text: &str, table: &str| {
+        let scene = read(text, table).unwrap_or_else(|faults| panic!("{faults}"));
+        let mut world = scene.model.start(scene.state);
+        world.step().unwrap();
+        world.state().systems[0].v[0].x
+    };
+    let head = "x,v,n.drive [N],value [s]\n";
+    let rows = "0,0,1,2\n0,4,3,2\n1,0,5,2\n1,4,-1,2\n";
+    // at x = 1/4, v = 1: 3/4 (3/4 1 + 1/4 3) + 1/4 (3/4 5 + 1/4 (-1))
+    let command = 0.75 * (0.75 + 0.25 * 3.0) + 0.25 * (0.75 * 5.0 - 0.25);
+    let speed = speed_after(text, &format!("{head}{rows}"));
+    assert!((speed - (1.0 + 0.01 * command / 2.0)).abs() < 1e-15, "{speed}");
+    let nearest = format!("{text}lookup = \"nearest\"\n");
+    assert!((speed_after(&nearest, &format!("{head}{rows}")) - 1.005).abs() < 1e-15);
+    // what leads nowhere has no say, and largest bounds what is read
+    let nowhere = rows.replace("0,0,1,2", "0,0,0,inf").replace("0,4,3,2", "0,4,0,inf").replace("-1,2", "5,2");
+    assert!((speed_after(text, &format!("{head}{nowhere}")) - 1.025).abs() < 1e-15);
+    assert!((speed_after(text, &format!("{head}{}", nowhere.replace(",5,", ",50,"))) - 1.03).abs() < 1e-15);
+    // formulas of inputs are numbers of the state
+    let scaled = format!("{text}states.far.value = \"4 * x\"\n");
+    let speed = speed_after(&scaled, "far,n.drive [N]\n0,2\n2,4\n");
+    assert!((speed - (1.0 + 0.01 * 3.0 / 2.0)).abs() < 1e-15, "{speed}");
+    for (table, words) in [
+        ("", "columns x, v, `n.drive [N]` and `value [s]`"),
+        ("v,x,n.drive [N]\n0,0,1\n", "its columns are `v, x, n.drive`"),
+        (head, "0 rows for 0 states"),
+        (&format!("{head}0,0,1\n"), "line 2 is `0,0,1`"),
+        (&format!("{head}0,0,inf,2\n"), "line 2 is `0,0,inf,2`"),
+        (&format!("{head}0,0,1,2\n1,4,1,2\n"), "line 3 is out of its place"),
+        (&format!("{head}0,4,1,2\n0,0,1,2\n"), "line 2 is out of its place"),
+    ] {
+        let message = read(text, table).err().expect("a refusal").to_string();
+        assert!(message.contains(words) && message.contains("a.csv"), "`{words}` is not in:\n{message}");
+    }
+    let idle = text.replace("table = \"a.csv\"", "value = \"1\"\nlookup = \"linear\"");
+    let message = read(&idle, "").err().expect("a refusal").to_string();
+    assert!(message.contains("has no table"), "{message}");
+    let message =
+        read(&format!("{text}states.far.value = \"4 * z\"\n"), "").err().expect("a refusal").to_string();
+    assert!(message.contains("a formula of x, v"), "{message}");
 }

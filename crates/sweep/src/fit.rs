@@ -287,6 +287,14 @@ pub(crate) fn as_number(value: &Value) -> Option<f64> {
     }
 }
 
+/// A number in SI units, or a text of one with its unit, which is of the dimension of `unit`.
+pub(crate) fn as_quantity(value: &Value, unit: &str) -> Option<f64> {
+    match value {
+        Value::String(text) => souple_formal::quantity_in(text, unit).ok(),
+        _ => as_number(value),
+    }
+}
+
 pub(crate) fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), SweepError> {
     match table.keys().find(|key| !known.contains(&key.as_str())) {
         None => Ok(()),

@@ -3,13 +3,14 @@
 //! A study is a TOML file (see [`Study`]). [`sweep`] makes the runs that the file does not hold yet, so that one that was
 //! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone. Where a study has a `fit`, values are looked
 //! for instead for which a probe follows a measured curve ([`Search`]); where it has a `plan`, commands with which the scene comes to key
-//! states ([`Planner`]).
+//! states ([`Planner`]), or from every state of a grid to a target ([`Tabulator`]).
 
 mod database;
 mod fit;
 pub mod graphs;
 mod least_squares;
 mod motion;
+mod state_space;
 mod study;
 mod sweep;
 mod table;
@@ -20,6 +21,7 @@ pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
 pub use motion::{Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner};
+pub use state_space::{FoundTable, Span, Tabulation, Tabulator};
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};

@@ -122,10 +122,7 @@ const DESCENT: f64 = 1e-4;
 impl Motion {
     /// # Errors
     /// A key is missing or unknown, or has a value that cannot be.
-    pub(crate) fn read(value: &Value) -> Result<Self, SweepError> {
-        let Value::Table(table) = value else {
-            return Err(SweepError::value("plan", value.to_string(), "a table"));
-        };
+    pub(crate) fn read(table: &Table) -> Result<Self, SweepError> {
         let found = |key: &str| table.get(key).map_or("missing".to_owned(), Value::to_string);
         let kind = match table.get("kind").and_then(Value::as_str) {
             Some("spacetime") => {
@@ -137,7 +134,7 @@ impl Motion {
                 Kind::linear_quadratic(table)?
             }
             _ => {
-                let expected = "\"spacetime\" or \"linear_quadratic\"";
+                let expected = "\"spacetime\", \"linear_quadratic\" or \"state_space\"";
                 return Err(SweepError::value("plan.kind", found("kind"), expected));
             }
         };
@@ -359,7 +356,7 @@ type Measured = (ProbeInfo, usize);
 
 /// A number of the state that evolves.
 #[derive(Clone, Copy)]
-struct Coordinate {
+pub(crate) struct Coordinate {
     system: usize,
     point: usize,
     component: usize,
@@ -381,7 +378,11 @@ struct Least {
 }
 
 impl Coordinate {
-    fn of(self, state: &State) -> f64 {
+    pub fn is_velocity(self) -> bool {
+        self.is_velocity
+    }
+
+    pub fn of(self, state: &State) -> f64 {
         let system = &state.systems[self.system];
         let block = if self.is_velocity { system.v[self.point] } else { system.q[self.point] };
         block[self.component]
@@ -393,6 +394,13 @@ impl Coordinate {
         let block = if self.is_velocity { &mut system.v[self.point] } else { &mut system.q[self.point] };
         block[self.component] += by;
         state
+    }
+}
+
+impl std::fmt::Display for Coordinate {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let of = if self.is_velocity { "velocity" } else { "position" };
+        write!(f, "the {} of the {of} of point {}", ["x", "y", "z"][self.component], self.point)
     }
 }
 
@@ -722,7 +730,7 @@ fn slope(all: &[Coordinate], gradient: &[f64], (ahead, behind): (&State, &State)
         / (2.0 * by)
 }
 
-fn coordinates(state: &State) -> Result<Vec<Coordinate>, SweepError> {
+pub(crate) fn coordinates(state: &State) -> Result<Vec<Coordinate>, SweepError> {
     let mut all = Vec::new();
     for (index, system) in state.systems.iter().enumerate() {
         if system.q.len() != system.v.len() {

@@ -8,6 +8,7 @@ use toml::{Table, Value};
 use crate::SweepError;
 use crate::fit::Fit;
 use crate::motion::Motion;
+use crate::state_space::Tabulation;
 
 /// A study, read from a TOML file.
 #[derive(Clone, Debug)]
@@ -25,6 +26,26 @@ pub struct Study {
     pub fit: Option<Fit>,
     /// What motion is sought, in the place of runs.
     pub motion: Option<Motion>,
+    /// What table of commands is sought, in the place of runs.
+    pub tabulation: Option<Tabulation>,
+}
+
+/// What a plan is of.
+enum Sought {
+    Motion(Motion),
+    Table(Tabulation),
+}
+
+impl Sought {
+    fn read(value: &Value) -> Result<Self, SweepError> {
+        let Value::Table(table) = value else {
+            return Err(SweepError::value("plan", value.to_string(), "a table"));
+        };
+        match table.get("kind").and_then(Value::as_str) {
+            Some("state_space") => Tabulation::read(table).map(Self::Table),
+            _ => Motion::read(table).map(Self::Motion),
+        }
+    }
 }
 
 /// One run: what it has of its own.
@@ -84,10 +105,9 @@ impl Study {
         {
             return Err(SweepError::value(other, "there beside `fit`", "a study of runs, or one of a fit"));
         }
-        let motion = document.get("plan").map(Motion::read).transpose()?;
+        let plan = document.get("plan").map(Sought::read).transpose()?;
         let others = ["vary", "table", "graphs", "fit", "steps"];
-        if let (Some(_), Some(other)) = (&motion, others.into_iter().find(|key| document.contains_key(*key)))
-        {
+        if let (Some(_), Some(other)) = (&plan, others.into_iter().find(|key| document.contains_key(*key))) {
             return Err(SweepError::value(other, "there beside `plan`", "a study of a plan alone"));
         }
         let mut table = Some(table);
@@ -97,7 +117,7 @@ impl Study {
         };
         let fit = fit.map(|fit| Fit::read(fit, folder, &mut table)).transpose()?;
         let runs = match (document.get("vary"), document.get("table")) {
-            (None, None) if fit.is_some() || motion.is_some() => Vec::new(),
+            (None, None) if fit.is_some() || plan.is_some() => Vec::new(),
             (Some(vary), None) => products(vary)?,
             (None, Some(_)) => {
                 let path = folder.join(text_of(&document, "table")?.unwrap_or_default());
@@ -129,6 +149,11 @@ impl Study {
             let found = format!("`{setting}`, of what `fit.values` looks for");
             return Err(SweepError::value("settings", found, "settings of other values"));
         }
+        let (motion, tabulation) = match plan {
+            Some(Sought::Motion(motion)) => (Some(motion), None),
+            Some(Sought::Table(tabulation)) => (None, Some(tabulation)),
+            None => (None, None),
+        };
         Ok(Self {
             title: text_of(&document, "title")?.unwrap_or_default().to_owned(),
             scene: if scene.is_dir() { scene.join("scene.toml") } else { scene },
@@ -138,6 +163,7 @@ impl Study {
             graphs: graphs(&document)?,
             fit,
             motion,
+            tabulation,
         })
     }
 

@@ -5,4 +5,5 @@ mod fit;
 mod linear_quadratic;
 mod motion;
 mod mutations;
+mod state_space;
 mod study;

@@ -46,6 +46,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("fascia", include_str!("../../../scenes/fascia/scene.toml")),
     ("fascia_torn", include_str!("../../../scenes/fascia_torn/scene.toml")),
     ("fast_tool", include_str!("../../../scenes/fast_tool/scene.toml")),
+    ("fastest_cart", include_str!("../../../scenes/fastest_cart/scene.toml")),
     ("fibre_tube", include_str!("../../../scenes/fibre_tube/scene.toml")),
     ("fork", include_str!("../../../scenes/fork/scene.toml")),
     ("frames_cantilever", include_str!("../../../scenes/frames_cantilever/scene.toml")),
@@ -179,6 +180,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("string", include_str!("../../../scenes/string/scene.toml")),
     ("surgical", include_str!("../../../scenes/surgical/scene.toml")),
     ("swelling_laws", include_str!("../../../scenes/swelling_laws/scene.toml")),
+    ("swing_up", include_str!("../../../scenes/swing_up/scene.toml")),
     ("swinging_cube", include_str!("../../../scenes/swinging_cube/scene.toml")),
     ("tearing_sheet", include_str!("../../../scenes/tearing_sheet/scene.toml")),
     ("thick_sphere", include_str!("../../../scenes/thick_sphere/scene.toml")),
@@ -208,9 +210,12 @@ const FILES: &[(&str, &str, &str)] = &[
     ("cooks_membrane", "cook_hex8.msh", include_str!("../../../scenes/cooks_membrane/cook_hex8.msh")),
     ("cooks_membrane", "cook_tet4.msh", include_str!("../../../scenes/cooks_membrane/cook_tet4.msh")),
     ("crane", "motion.plan.csv", include_str!("../../../scenes/crane/motion.plan.csv")),
+    ("fastest_cart", "coarse.table.csv", include_str!("../../../scenes/fastest_cart/coarse.table.csv")),
+    ("fastest_cart", "fine.table.csv", include_str!("../../../scenes/fastest_cart/fine.table.csv")),
     ("planned_cart", "motion.plan.csv", include_str!("../../../scenes/planned_cart/motion.plan.csv")),
     ("regulated_cart", "motion.plan.csv", include_str!("../../../scenes/regulated_cart/motion.plan.csv")),
     ("steered_cart", "motion.plan.csv", include_str!("../../../scenes/steered_cart/motion.plan.csv")),
+    ("swing_up", "table.csv", include_str!("../../../scenes/swing_up/table.csv")),
 ];
 
 /// Names and texts of the files that a scene names.

@@ -40,7 +40,7 @@ pub(crate) use bodies::{BodyMaterials, Placed, solid_name};
 pub(crate) use boundary::constant_vector;
 pub(crate) use frames::hold_name;
 pub use hanging::OwnRows;
-pub use network::{FillInfo, LawInfo, NetworkInfo};
+pub use network::{FillInfo, LawInfo, NetworkInfo, NumberOfMass, StateSpace, number_of};
 
 use std::collections::BTreeSet;
 use std::path::Path;

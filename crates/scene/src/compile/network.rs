@@ -8,13 +8,16 @@ mod fill;
 mod plan;
 mod steps;
 mod summary;
+mod table;
 mod views;
 
 pub use controls::add as add_controls;
 pub use ends::size;
 pub use fill::fill_all;
+pub use plan::number_of;
 pub use steps::warn_of_steps;
 pub use summary::{FillInfo, LawInfo, NetworkInfo, networks};
+pub use table::{NumberOfMass, StateSpace};
 
 use std::ops::Range;
 

@@ -11,6 +11,8 @@ use crate::reader::Reader;
 pub const VARIABLES: [&str; 2] = ["t", "previous"];
 /// Inputs of a control, at most.
 pub const INPUTS: usize = 14;
+/// Numbers of a state that a table is over, at most.
+pub const STATES: usize = 4;
 
 static INPUT: Keys = Keys::new(
     "control_input",
@@ -26,6 +28,12 @@ static INPUT: Keys = Keys::new(
         Key::new("to", Shape::Text, "of distances: the other group"),
         Key::new("component", Shape::Choice(&["x", "y", "z"]), "of positions and velocities"),
     ],
+);
+
+static STATE: Keys = Keys::new(
+    "control_state",
+    "a number of the state that a table of commands is over",
+    &[Key::new("value", Shape::Text, "a formula of the inputs").required()],
 );
 
 pub(super) static CONTROL: Keys = Keys::new(
@@ -62,6 +70,21 @@ pub(super) static CONTROL: Keys = Keys::new(
             "feedback",
             Shape::Boolean,
             "of `plan`: whether the gains of the file, where it has some, answer to deviations from the planned motion; they do where left out",
+        ),
+        Key::new(
+            "table",
+            Shape::Text,
+            "or a file of the commands of an actuator over a state space, as `souple sweep` makes them, relative to the scene file",
+        ),
+        Key::new(
+            "states",
+            Shape::Named(&STATE),
+            "of `table`: the numbers that its columns are of, by their names; the inputs themselves where left out",
+        ),
+        Key::new(
+            "lookup",
+            Shape::Choice(&["linear", "nearest"]),
+            "of `table`: commands between entries by linear interpolation, or those of the nearest entry; `linear` where left out",
         ),
         Key::new("inputs", Shape::Named(&INPUT), "what it reads, by the names that it uses"),
     ],
@@ -104,6 +127,29 @@ pub enum Drives {
         site: Site,
         feedback: Feedback,
     },
+    /// The commands of an actuator over a state space; none at all where there is no file yet.
+    Table {
+        file: Option<(String, Site)>,
+        states: Vec<StateSpec>,
+        lookup: Lookup,
+    },
+}
+
+/// A number of the state that a table is over.
+#[derive(Clone, Debug)]
+pub struct StateSpec {
+    pub name: String,
+    /// Of the inputs; the input of its name where `None`.
+    pub value: Option<Formula>,
+}
+
+/// What a table says between its entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lookup {
+    /// Commands, interpolated linearly along each axis.
+    Linear,
+    /// The command of the nearest entry.
+    Nearest,
 }
 
 /// What is made of the gains of a plan.
@@ -152,7 +198,7 @@ impl ControlSpec {
         if reader.has("ramp") && !reader.has("connects") {
             refuse("ramp", format!("control `{name}` connects nothing"), "`ramp` beside `connects`");
         }
-        let drives = match reader.written(&["connects", "parameter", "value", "plan"])[..] {
+        let drives = match reader.written(&["connects", "parameter", "value", "plan", "table"])[..] {
             ["value"] if is_of_actuator => Formula::compile(&reader.text("value"), &variables)
                 .map(Drives::Command)
                 .map_err(|error| wrong("value", &error))
@@ -162,8 +208,25 @@ impl ControlSpec {
                 let feedback = if is_without { Feedback::Without } else { Feedback::AsPlanned };
                 Some(Drives::Plan { file: reader.text("plan"), site: reader.site_of("plan"), feedback })
             }
+            ["table"] if is_of_actuator => {
+                let states = states(reader, &names);
+                if states.is_empty() || states.len() > STATES {
+                    refuse(
+                        "table",
+                        format!("a state of {} numbers", states.len()),
+                        &format!("1 to {STATES}"),
+                    );
+                }
+                let is_nearest = reader.has("lookup") && reader.choice("lookup") == "nearest";
+                Some(Drives::Table {
+                    file: Some((reader.text("table"), reader.site_of("table"))),
+                    states,
+                    lookup: if is_nearest { Lookup::Nearest } else { Lookup::Linear },
+                })
+            }
             _ if is_of_actuator => {
-                refuse("actuator", format!("control `{name}` commands an actuator"), "value or plan, alone");
+                let message = format!("control `{name}` commands an actuator");
+                refuse("actuator", message, "value, plan or table, alone");
                 None
             }
             ["connects"] => Condition::compile(&reader.text("connects"), &variables)
@@ -178,7 +241,7 @@ impl ControlSpec {
                 refuse(
                     "parameter",
                     format!("control `{name}` does not say what it does"),
-                    "connects, or parameter and value; with an actuator value or plan",
+                    "connects, or parameter and value; with an actuator value, plan or table",
                 );
                 None
             }
@@ -189,6 +252,11 @@ impl ControlSpec {
                 format!("control `{name}` has no plan"),
                 "`plan` beside it, whose gains it is about",
             );
+        }
+        if let Some(key) =
+            ["states", "lookup"].into_iter().find(|key| reader.has(key) && !reader.has("table"))
+        {
+            refuse(key, format!("control `{name}` has no table"), "`table` beside it");
         }
         let inputs = inputs.iter().map(|(name, input)| InputSpec::read(name, input)).collect();
         let written = reader.written(&["links", "crowds", "actuator"]);
@@ -217,6 +285,23 @@ impl ControlSpec {
         };
         Self { name, of, drives, inputs, site: reader.site() }
     }
+}
+
+/// Numbers of the state of a table, by formulas of these inputs; the inputs themselves where there are none.
+fn states(reader: &Reader, inputs: &[&str]) -> Vec<StateSpec> {
+    if !reader.has("states") {
+        return inputs.iter().map(|name| StateSpec { name: (*name).to_owned(), value: None }).collect();
+    }
+    let read = |(name, state): (String, Reader)| {
+        let value = Formula::compile(&state.text("value"), inputs);
+        if let Err(error) = &value {
+            let (site, expected) =
+                (state.site_of_part("value", error.span()), format!("a formula of {}", inputs.join(", ")));
+            state.log().add(Code::BadFormula, &site, error.without_place(), expected);
+        }
+        Some(StateSpec { name, value: Some(value.ok()?) })
+    };
+    reader.named("states").into_iter().filter_map(read).collect()
 }
 
 impl<N: AsRef<str>> Driven<N> {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Ending, Fit, Kind, Motion, Planner, Progress, Search, Study, SweepError, Unknown, Workers,
-    fingerprints, graphs, sweep as make_runs, table_of,
+    Database, Ending, Fit, Kind, Motion, Planner, Progress, Search, Study, SweepError, Tabulation, Tabulator,
+    Unknown, Workers, fingerprints, graphs, sweep as make_runs, table_of,
 };
 use souple_table::counted;
 
@@ -65,6 +65,9 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
     }
     if let Some(motion) = &study.motion {
         return plan(arguments, &study, motion);
+    }
+    if let Some(tabulation) = &study.tabulation {
+        return tabulate(arguments, &study, tabulation);
     }
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("sqlite"));
     let mut database = Database::open(&out, &study.scene.display().to_string())?;
@@ -265,6 +268,78 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     }
     print_note(format_args!(
         "warning: it ended after {}, at commands that keys or the least effort are not reached with",
+        counted(found.iterations as u64, "iteration")
+    ));
+    Ok(End::Failed)
+}
+
+/// Looks for the table of commands over a state space, and writes it where a scene may read it.
+fn tabulate(arguments: &Arguments, study: &Study, tabulation: &Tabulation) -> Result<End, Refusal> {
+    refuse_options(arguments, "plan", &["--jobs", "--out"])?;
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("table.csv"));
+    keep_inputs(&out, &[&arguments.study, &study.scene])?;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let interruption = interruption::heed();
+    let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
+    let meter = Meter::new("shots", arguments.quiet);
+    let watch = |done: usize, all: usize| meter.show(done as u64, all as u64, "");
+    let found = Tabulator { study, tabulation, count, stop: &interruption }.run(&watch)?;
+    drop(meter);
+    let Some(found) = found else { return Ok(End::Interrupted) };
+    let columns = found.columns();
+    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
+    keep_others(&out, &names)?;
+    souple_io::write_csv(&out, &columns)?;
+    let (unreached, first) = found.unreached();
+    let from_start = found.from_start.filter(|value| value.is_finite());
+    if arguments.json {
+        print_json(&json!({
+            "title": study.title,
+            "scene": study.scene.display().to_string(),
+            "controls": found.commands.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+            "states": found.values.len(),
+            "unreached": unreached,
+            "from_start": from_start,
+            "shots": found.shots,
+            "failed": found.failed,
+            "iterations": found.iterations,
+            "converged": found.is_converged,
+            "files": [out.display().to_string()],
+        }));
+    } else if !arguments.quiet {
+        print_line(format_args!(
+            "{}, {}, {}",
+            counted(found.values.len() as u64, "state"),
+            counted(found.shots as u64, "shot"),
+            counted(found.iterations as u64, "iteration")
+        ));
+        if let Some(value) = from_start {
+            print_line(format_args!("from the start of the scene it costs {value:.9e} s"));
+        }
+        print_line(format_args!("  {}", out.display()));
+    }
+    if let Some(first) = first {
+        print_note(format_args!(
+            "note: from {} nothing leads to the target within the table, such as {first}",
+            counted(unreached as u64, "state")
+        ));
+    }
+    if from_start.is_none() {
+        print_note(format_args!(
+            "warning: from the start of the scene nothing leads to the target within the table"
+        ));
+    }
+    if found.failed > 0 {
+        let failed = counted(found.failed as u64, "shot");
+        print_note(format_args!(
+            "warning: {failed} could not be stepped, and count as ways that lead nowhere"
+        ));
+    }
+    if found.is_converged {
+        return Ok(End::Done);
+    }
+    print_note(format_args!(
+        "warning: it ended after {}, before values stood",
         counted(found.iterations as u64, "iteration")
     ));
     Ok(End::Failed)

@@ -38,6 +38,28 @@ const STEERED: Case = Case {
     ..REGULATED
 };
 
+const FASTEST: Case = Case {
+    scene: "fastest_cart",
+    source: "specification §6.3, PA-46: the least of t + ∫ K C dt, by shots between the entries of a table; to a box |x| ≤ a, |v| ≤ b a cart \
+             goes full ahead to the speed V = √(A (d − a) + b²/2) and full back to b, in (2 V − b)/A",
+    mutation: "networks.cart.actuators.motor.largest=2",
+    ..CARTS
+};
+
+/// The table with half as many places along each number of the state.
+const COARSE: &str = "networks.cart.controls.drive.table=\"./coarse.table.csv\"";
+
+const SWING: Case = Case {
+    scene: "swing_up",
+    source: "specification §6.3, PA-46: the least of t + ∫ K C dt, by shots between the entries of a table",
+    reading: Reading::last("height"),
+    reference: 1.0,
+    // within an entry of upright, 1 − cos 6°
+    tolerance: Tolerance::Absolute(0.0055),
+    mutation: "networks.pendulum.actuators.push.largest=0.2",
+    ..CARTS
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "cart_is_led_by_a_formula",
@@ -117,5 +139,64 @@ pub(super) const CASES: &[Case] = &[
         // 1 + h²/m Σ g_n (N − n − 1/2) with g_n = 4 max(0, 1 − |n h − 0.7|/0.2)
         reference: 1.516,
         ..STEERED
+    },
+    Case {
+        id: "fastest_cart_is_on_time",
+        what: "where a cart is that a table over place and speed leads to rest, in 0.913 s, when the fastest is at the edge of the goal",
+        reading: Reading::last("place").after(913),
+        reference: -0.06,
+        // levels pass into each other over an entry and not at once, which is as far as it may be off
+        tolerance: Tolerance::Absolute(0.06),
+        ..FASTEST
+    },
+    Case {
+        id: "fastest_cart_by_a_coarse_table",
+        what: "the same by a table of half as many places along each number of the state",
+        settings: &[COARSE],
+        reading: Reading::last("place").after(913),
+        reference: -0.06,
+        tolerance: Tolerance::Absolute(0.12),
+        ..FASTEST
+    },
+    Case {
+        id: "fastest_cart_keeps_what_its_table_tells",
+        what: "its speed when the table has it in the goal, after what the way from the start costs there",
+        // 1.0008 s
+        reading: Reading::last("speed").after(1001),
+        reference: 0.0,
+        // the goal
+        tolerance: Tolerance::Absolute(0.24),
+        ..FASTEST
+    },
+    Case {
+        id: "fastest_cart_keeps_what_a_coarse_table_tells",
+        what: "the same by the coarse table, which has it there later",
+        settings: &[COARSE],
+        // 1.1142 s
+        reading: Reading::last("speed").after(1115),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.24),
+        ..FASTEST
+    },
+    Case {
+        id: "fastest_cart_stays",
+        what: "where it is in the end",
+        reading: Reading::last("place"),
+        reference: 0.0,
+        // the goal
+        tolerance: Tolerance::Absolute(0.06),
+        mutation: "networks.cart.actuators.motor.largest=0.5",
+        ..FASTEST
+    },
+    Case {
+        id: "pendulum_is_swung_up",
+        what: "how high a pendulum ends that pushes of less than half its weight swing up from rest",
+        ..SWING
+    },
+    Case {
+        id: "pendulum_is_caught",
+        what: "the same, let go on the way up",
+        settings: &["networks.pendulum.masses.bob.positions=[[0.8, -0.6, 0]]"],
+        ..SWING
     },
 ];

@@ -13,11 +13,12 @@ use super::super::Draft;
 use super::super::bodies::Placed;
 use super::crowd_force;
 use super::plan::{self, Plan};
+use super::table::{self, NumberOfMass, StateSpace, Table};
 use crate::diagnostic::Code;
 use crate::keys::one_of;
 use crate::reader::Chosen;
 use crate::spec::Spec;
-use crate::spec::control::{ControlSpec, Driven, Drives, INPUTS, InputSpec, VARIABLES};
+use crate::spec::control::{ControlSpec, Driven, Drives, INPUTS, InputSpec, STATES, VARIABLES};
 use crate::spec::network::Network;
 
 /// Numbers that all controls of a scene keep in State.
@@ -87,7 +88,7 @@ fn wiring(draft: &Draft, body: &Placed, network: &Network, of: &Driven<&str>, dr
                     wiring.parameters.push((parameter.clone(), slot));
                 }
             }
-            Some(Drives::Command(_) | Drives::Plan { .. }) | None => {}
+            Some(Drives::Command(_) | Drives::Plan { .. } | Drives::Table { .. }) | None => {}
         }
     }
     wiring
@@ -212,6 +213,13 @@ fn control(
             let plan = plan::read(draft, body, (site, file), &name, *feedback)?;
             (Rule::Plan { plan, largest: network.largest(spec.of.name()) }, 0.0)
         }
+        Drives::Table { file: None, .. } => (Rule::Parameter(Formula::constant(0.0)), 0.0),
+        Drives::Table { file: Some((file, site)), lookup, .. } => {
+            let space = StateSpace::of(draft, body, network, spec)?;
+            let names: Vec<&str> = space.names().collect();
+            let table = table::read(draft, (site, file), &space.control, (&names, *lookup))?;
+            (Rule::Table { space, table, largest: network.largest(spec.of.name()) }, 0.0)
+        }
     };
     let name = format!("{}.{}", body.spec.name, spec.name);
     let forces = laws.into_iter().map(|(force, _)| force).collect();
@@ -250,9 +258,17 @@ enum Rule {
         plan: Plan,
         largest: f64,
     },
+    /// The same, of each state.
+    Table {
+        space: StateSpace,
+        table: Table,
+        largest: f64,
+    },
 }
 
-struct Input {
+/// What a control reads of masses.
+#[derive(Clone, Debug)]
+pub struct Input {
     of: Range<usize>,
     to: Range<usize>,
     quantity: &'static str,
@@ -260,7 +276,7 @@ struct Input {
 }
 
 impl Input {
-    fn new(draft: &Draft, body: &Placed, network: &Network, spec: &InputSpec) -> Option<Self> {
+    pub fn new(draft: &Draft, body: &Placed, network: &Network, spec: &InputSpec) -> Option<Self> {
         let rows = |name: &str| {
             let Some(numbers) = network.numbers_of(name) else {
                 let known: Vec<&str> = network.masses.iter().map(|group| group.name.as_str()).collect();
@@ -279,7 +295,14 @@ impl Input {
         })
     }
 
-    fn read(&self, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
+    /// The place or the velocity of one mass along an axis, where it is that.
+    pub fn number_of_mass(&self) -> Option<NumberOfMass> {
+        let is_velocity = self.quantity == "velocity";
+        let is_one = self.of.len() == 1 && (is_velocity || self.quantity == "position");
+        is_one.then_some(NumberOfMass { row: self.of.start, component: self.component, is_velocity })
+    }
+
+    pub fn read(&self, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
         match self.quantity {
             "velocity" => mean(velocities, &self.of)[self.component],
             "speed" => mean(velocities, &self.of).length(),
@@ -318,6 +341,11 @@ impl Written {
                 // without a period at the start
                 let number = if period > 0.0 { (time / period).round() as usize } else { 0 };
                 plan.command(number, positions, velocities).clamp(-largest, *largest)
+            }
+            Rule::Table { space, table, largest } => {
+                let mut state = [0.0; STATES];
+                space.read(positions, velocities, &mut state);
+                table.command(&state).clamp(-largest, *largest)
             }
             Rule::Command { value, largest } => value.evaluate(&values).clamp(-largest, *largest),
             Rule::Connection { holds, ramp } => {

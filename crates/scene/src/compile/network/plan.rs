@@ -6,6 +6,7 @@ use souple_math::Vec3;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
+use super::table::NumberOfMass;
 use crate::diagnostic::{Code, Site};
 use crate::spec::control::Feedback;
 
@@ -22,10 +23,7 @@ pub struct Plan {
 
 /// What a control makes of one number of the state.
 struct Gain {
-    /// Row of the system.
-    row: usize,
-    component: usize,
-    is_velocity: bool,
+    number: NumberOfMass,
     /// `S_n` and `K_n`, period by period.
     planned: Vec<[f64; 2]>,
 }
@@ -42,8 +40,9 @@ impl Plan {
 impl Gain {
     fn answer(&self, period: usize, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
         let [planned, gain] = self.planned[period];
-        let now = if self.is_velocity { velocities[self.row] } else { positions[self.row] };
-        gain * (now[self.component] - planned)
+        let NumberOfMass { row, component, is_velocity } = self.number;
+        let now = if is_velocity { velocities[row] } else { positions[row] };
+        gain * (now[component] - planned)
     }
 }
 
@@ -51,12 +50,12 @@ impl Gain {
 const NUMBERS: [(&str, bool, usize); 6] =
     [("x", false, 0), ("y", false, 1), ("z", false, 2), ("v.x", true, 0), ("v.y", true, 1), ("v.z", true, 2)];
 
-/// The row, the component, and whether it is of a velocity, of a number that belongs to the masses of a body.
-fn number_of(body: &str, rows: &Range<usize>, name: &str) -> Option<(usize, usize, bool)> {
+/// A number of the masses of a body.
+pub fn number_of(body: &str, rows: &Range<usize>, name: &str) -> Option<NumberOfMass> {
     let (mass, number) = name.strip_prefix(body)?.strip_prefix('[')?.split_once("].")?;
     let row = rows.start + mass.parse::<usize>().ok()?;
     let (_, is_velocity, component) = NUMBERS.into_iter().find(|(known, ..)| *known == number)?;
-    rows.contains(&row).then_some((row, component, is_velocity))
+    rows.contains(&row).then_some(NumberOfMass { row, component, is_velocity })
 }
 
 /// The plan of a control; `None` where the file was refused.
@@ -110,9 +109,7 @@ pub fn read(
         let Some(number) = name.strip_prefix(control).and_then(|rest| rest.strip_prefix(" / ")) else {
             continue;
         };
-        let (Some(planned), Some((row, component, is_velocity))) =
-            (column_of(number), number_of(body, rows, number))
-        else {
+        let (Some(planned), Some(of)) = (column_of(number), number_of(body, rows, number)) else {
             let expected = format!(
                 "positions and velocities of masses of the network, `{body}[0].x` to `{body}[{}].v.z`, with a column of what each is \
                  planned to be",
@@ -120,7 +117,7 @@ pub fn read(
             );
             return refuse(Code::UnknownName, format!("a gain is of `{number}`"), &expected);
         };
-        gains.push(([planned, at], Gain { row, component, is_velocity, planned: Vec::new() }));
+        gains.push(([planned, at], Gain { number: of, planned: Vec::new() }));
     }
     let (period, count) = (draft.spec.world.period, names.len());
     let mut commands = Vec::new();

@@ -5,6 +5,7 @@ use souple_table::Value;
 
 use super::super::Draft;
 use super::crowd_force;
+use super::table::StateSpace;
 use crate::spec::network::{Filled, MassGroup, Places};
 use crate::spec::units::from_algorithmic;
 
@@ -22,6 +23,8 @@ pub struct NetworkInfo {
     pub lightest: Option<f64>,
     pub laws: Vec<LawInfo>,
     pub fills: Vec<FillInfo>,
+    /// Of controls that have a table.
+    pub state_spaces: Vec<StateSpace>,
 }
 
 /// A group of masses that fills a shape.
@@ -161,6 +164,9 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                 lightest: moving.map(|group| group.mass).reduce(f64::min),
                 laws: links.chain(crowds).collect(),
                 fills: network.masses.iter().filter_map(fill).collect(),
+                state_spaces: (network.controls.iter())
+                    .filter_map(|control| StateSpace::of(draft, body, network, control))
+                    .collect(),
             }
         })
         .collect()
