@@ -31,9 +31,9 @@ pub use ground::grounds;
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
 pub use scene::{
-    BodyInfo, CarriedMarks, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, MarksInfo, Planned, PlannedControl,
-    ReducedInfo, Scene, SkinInfo, read_again, read_file, read_file_to_plan, read_file_with_carriers,
-    read_spec, read_text, read_text_with_files,
+    BodyInfo, CarriedMarks, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, MarksInfo, Planned,
+    PlannedControl, ReducedInfo, Scene, SkinInfo, read_again, read_file, read_file_to_plan,
+    read_file_with_carriers, read_spec, read_text, read_text_with_files,
 };
-pub use schema::schema;
+pub use schema::{SceneKey, SceneTable, scene_tables, schema};
 pub use spec::Spec;

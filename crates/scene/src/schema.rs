@@ -25,6 +25,75 @@ pub fn schema() -> Json {
     })
 }
 
+/// A kind of table that scenes hold under a key.
+#[derive(Clone, Debug)]
+pub struct SceneTable {
+    /// Keys from the root, such as `networks.NAME.actuators.NAME`.
+    pub path: String,
+    pub summary: &'static str,
+    pub keys: Vec<SceneKey>,
+}
+
+/// What may stand in such a table.
+#[derive(Clone, Debug)]
+pub struct SceneKey {
+    pub name: &'static str,
+    pub summary: &'static str,
+    /// SI unit of numbers, empty for pure ones.
+    pub unit: &'static str,
+    /// What would be accepted, in words.
+    pub expected: String,
+    pub default: Option<String>,
+}
+
+/// The tables that scenes hold under keys, each kind once, at its shortest path.
+pub fn scene_tables() -> Vec<SceneTable> {
+    let (mut tables, mut known) = (Vec::new(), vec![SCENE.name]);
+    let mut next: Vec<(String, &'static Keys)> = vec![(String::new(), &SCENE)];
+    while !next.is_empty() {
+        let mut deeper = Vec::new();
+        for (path, keys) in next {
+            for key in keys.keys {
+                let (within, more) = match key.shape {
+                    Shape::Table(within) => (within, ""),
+                    Shape::Tables(within) => (within, "[]"),
+                    Shape::Named(within) => (within, ".NAME"),
+                    _ => continue,
+                };
+                if known.contains(&within.name) {
+                    continue;
+                }
+                known.push(within.name);
+                let dot = if path.is_empty() { "" } else { "." };
+                let path = format!("{path}{dot}{}{more}", key.name);
+                let keys = within.keys.iter().map(SceneKey::of).collect();
+                tables.push(SceneTable { path: path.clone(), summary: within.summary, keys });
+                deeper.push((path, within));
+            }
+        }
+        next = deeper;
+    }
+    tables
+}
+
+impl SceneTable {
+    /// The key that holds it.
+    pub fn name(&self) -> &str {
+        let path = self.path.trim_end_matches(".NAME").trim_end_matches("[]");
+        path.rsplit('.').next().unwrap_or(path)
+    }
+}
+
+impl SceneKey {
+    fn of(key: &Key) -> Self {
+        let default = match key.need {
+            Need::Default(default) => Some(default.to_string()),
+            Need::Required | Need::Optional => None,
+        };
+        Self { name: key.name, summary: key.summary, unit: key.unit, expected: key.expected(), default }
+    }
+}
+
 /// Tables described so far, by name.
 #[derive(Default)]
 struct Definitions(BTreeMap<String, Json>);

@@ -106,6 +106,16 @@ fn one_document_each() {
         assert_list(&described[0]["parameters"], &["name", "summary", "unit", "expected", "default"]);
     }
 
+    // tables of scenes that have no table of entries
+    for (name, key) in
+        [("actuators", "largest"), ("marks", "whitening_pressure"), ("modes", "count"), ("controls", "value")]
+    {
+        let described = json(&["describe", name]);
+        assert_list(&described, &page);
+        let keys = described[0]["parameters"].as_array().expect("a list");
+        assert!(keys.iter().any(|known| known["name"] == key), "{name}: {described}");
+    }
+
     assert_keys(&json(&["schema"]), &["$schema", "title", "$defs"]);
     let cases = json(&["verify", "--list"]);
     assert_list(&cases, &["id", "capabilities", "what", "scene", "reference", "tolerance", "source"]);

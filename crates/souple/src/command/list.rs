@@ -5,6 +5,7 @@ use souple_engine::linear;
 use souple_formal::law::EnergyLaw;
 use souple_mesh::ElementKind;
 use souple_models::materials::{Lame, WRITTEN_LAWS, WrittenLaw};
+use souple_scene::{SceneKey, SceneTable, scene_tables};
 use souple_table::{Entry, Kind, Parameter, Table, readable};
 
 use super::law_steps::Step;
@@ -23,7 +24,7 @@ pub struct ListArguments {
 
 #[derive(clap::Args)]
 pub struct DescribeArguments {
-    /// Name of a material, an element, a stepper, …
+    /// Name of a material, an element, a stepper, …, or of a key of scenes that holds a table, as `actuators`
     name: String,
     #[arg(long)]
     pub json: bool,
@@ -181,8 +182,12 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     let tables = tables();
     let pages: Vec<&Page> = tables.iter().flat_map(|(_, pages)| pages).collect();
     let found: Vec<&&Page> = pages.iter().filter(|page| page.name == arguments.name).collect();
-    if found.is_empty() {
-        let hint = did_you_mean(&arguments.name, pages.iter().map(|page| page.name.as_str()));
+    let scene_tables = scene_tables();
+    let of_scenes: Vec<&SceneTable> =
+        scene_tables.iter().filter(|table| table.name() == arguments.name).collect();
+    if found.is_empty() && of_scenes.is_empty() {
+        let known = pages.iter().map(|page| page.name.as_str());
+        let hint = did_you_mean(&arguments.name, known.chain(scene_tables.iter().map(SceneTable::name)));
         let message = format!("nothing is called `{}`{hint}", arguments.name);
         return Err(Refusal::request(
             "unknown_name",
@@ -207,8 +212,17 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
             }
             document
         });
-        print_json(&Value::Array(described.collect()));
+        print_json(&Value::Array(described.chain(of_scenes.into_iter().map(table_to_json)).collect()));
         return Ok(End::Done);
+    }
+    for table in of_scenes {
+        print_line(format_args!("{} ({KEY_OF_SCENES} {})", table.name(), table.path));
+        print_line(format_args!("  {}", table.summary));
+        for key in &table.keys {
+            let default = key.default.as_ref().map(|value| format!(", default {value}")).unwrap_or_default();
+            print_line(format_args!("  {}: {}", key.name, key.summary));
+            print_line(format_args!("      {}{default}", key.expected));
+        }
     }
     for page in found {
         print_line(format_args!("{} ({})", page.name, page.kind));
@@ -247,6 +261,29 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         }
     }
     Ok(End::Done)
+}
+
+/// What a table that scenes hold under a key is called among what is described.
+const KEY_OF_SCENES: &str = "key of scenes";
+
+fn table_to_json(table: &SceneTable) -> Value {
+    let key = |key: &SceneKey| {
+        json!({
+            "name": key.name,
+            "summary": key.summary,
+            "unit": key.unit,
+            "expected": key.expected,
+            "default": key.default,
+        })
+    };
+    json!({
+        "name": table.name(),
+        "kind": KEY_OF_SCENES,
+        "path": table.path,
+        "summary": table.summary,
+        "source": "",
+        "parameters": table.keys.iter().map(key).collect::<Vec<_>>(),
+    })
 }
 
 /// How many numbers a link of a law remembers.
