@@ -18,6 +18,9 @@ pub(super) fn shares_at(later: &[Shares], time: f64) -> Option<&[f64]> {
     later.iter().rev().find(|shares| shares.from <= time).map(|shares| shares.of_points.as_slice())
 }
 
+/// Numbers of triangles, one after the other.
+pub(super) type InTurn<'a> = &'a mut dyn Iterator<Item = usize>;
+
 /// Which triangles are there, and which rows they have.
 #[derive(Clone, Debug)]
 pub(super) struct Openings {
@@ -62,7 +65,7 @@ impl Openings {
     pub fn largest_sums(
         &self,
         triangle_count: usize,
-        of: &dyn Fn(&mut dyn Iterator<Item = usize>) -> Vec<(u32, f64)>,
+        of: impl Fn(InTurn) -> Vec<(u32, f64)>,
     ) -> Vec<(u32, f64)> {
         if self.dates.is_empty() {
             return of(&mut (0..triangle_count));

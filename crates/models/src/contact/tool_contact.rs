@@ -517,7 +517,7 @@ impl Force for ToolContact {
         let stiffest = self.law.stiffest();
         let bound =
             |triangle: usize| self.corners[triangle].map(|row| (row, stiffest * self.shares[triangle]));
-        Some(self.openings.largest_sums(self.corners.len(), &|triangles| triangles.flat_map(bound).collect()))
+        Some(self.openings.largest_sums(self.corners.len(), |triangles| triangles.flat_map(bound).collect()))
     }
 
     fn accepts_pair(&self, pair: &Pair) -> bool {
