@@ -15,7 +15,7 @@
 //!
 //! A relation of one component may yield: `|λ| ≤ Y`, and where that is reached it gives way and what it is to be goes along, `w' = g(x', t')`, a
 //! perfectly plastic flow `p` from what it was told. Which do is a quadratic problem between bounds, solved to first order in each iteration
-//! of Newton's method ([`limits`]). What yields takes `Y |Δp|`, and works on masses what it is told to change by times its multiplier.
+//! of Newton's method (`limits.rs`). What yields takes `Y |Δp|`, and works on masses what it is told to change by times its multiplier.
 
 mod commit;
 mod limits;
