@@ -418,7 +418,7 @@ fn every_quantity_is_measured() {
     let felt = format!("{CUBE}{FELT}");
     let held = format!("{CUBE}{}{HOLDING}", FELT.replace("mass = \"50 g\"\n", ""));
     let led = format!("{CUBE}{ON_A_BONE}");
-    let marked = format!("{CUBE}[bodies.cube.marks]\n");
+    let marked = format!("{CUBE}[bodies.cube.marks.bleeding]\n");
     let probed = [
         (CUBE, ""),
         (CUBE, cube),
