@@ -146,7 +146,9 @@ pub(super) fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Optio
             (around_points(&surface, &dates), dates)
         }
     };
-    chosen.retain(|around| is_inside(around.point));
+    // what has no area at any time of the run is on no surface then
+    let is_there = |around: &Around| around.areas.iter().any(|area| *area > 0.0);
+    chosen.retain(|around| is_inside(around.point) && is_there(around));
     if chosen.is_empty() {
         let site = contact.region.as_ref().map_or(&contact.site, |region| &region.site);
         let message = format!("this region holds no point on the surface of body `{}`", contact.body);
