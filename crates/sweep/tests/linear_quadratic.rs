@@ -95,7 +95,11 @@ fn what_cannot_be_regulated_is_named() {
         ("weight = 100", "wait = 100", "plan.costs[0].wait"),
         ("\"speed\"", "\"haste\"", "`plan.costs.probe` is haste; expected a probe: place, speed"),
         ("\"linear_quadratic\"", "\"spacetime\"", "plan.costs"),
-        ("\"linear_quadratic\"", "\"quadratic\"", "expected \"spacetime\", \"linear_quadratic\" or \"state_space\""),
+        (
+            "\"linear_quadratic\"",
+            "\"quadratic\"",
+            "expected \"spacetime\", \"linear_quadratic\" or \"state_space\"",
+        ),
         ("weight = 100", "weight = 1000", "the plan asks for "),
     ] {
         let error = plan("regulated_cart", &[(from, to)]).map(|_| ()).unwrap_err().to_string();
