@@ -1,6 +1,7 @@
 //! Networks become points with masses, and links of one law one force each.
 
 mod coincident;
+mod columns;
 mod constraints;
 mod controls;
 mod ends;

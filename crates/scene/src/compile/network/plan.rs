@@ -6,6 +6,7 @@ use souple_math::Vec3;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
+use super::columns::{column_names, text_of};
 use super::table::NumberOfMass;
 use crate::diagnostic::{Code, Site};
 use crate::spec::control::Feedback;
@@ -75,18 +76,10 @@ pub fn read(
         draft.log.add(code, site, format!("`{file}`: {message}"), expected);
         None
     };
-    let text = match draft.sources.read(site.place.source, file) {
-        Ok(text) => text,
-        Err(error) => {
-            let is_missing = error.kind() == std::io::ErrorKind::NotFound;
-            let code = if is_missing { Code::NotFound } else { Code::Unreadable };
-            return refuse(code, error.to_string(), "a plan, as `souple sweep` writes it");
-        }
-    };
+    let text = text_of(draft, (site, file), "a plan, as `souple sweep` writes it")?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let head = lines.next().map_or("", |(_, line)| line);
-    let names: Vec<&str> =
-        head.split(',').map(|cell| cell.trim().split(" [").next().unwrap_or_default()).collect();
+    let names = column_names(head);
     let column_of = |name: &str| names.iter().skip(1).position(|known| *known == name).map(|at| at + 1);
     let Some(column) = column_of(control) else {
         let message = format!("no column is of `{control}`");

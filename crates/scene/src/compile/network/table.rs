@@ -4,6 +4,7 @@ use souple_math::Vec3;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
+use super::columns::{column_names, text_of};
 use super::controls::Input;
 use crate::diagnostic::{Code, Site};
 use crate::spec::control::{ControlSpec, Drives, INPUTS, Lookup, STATES, StateSpec};
@@ -128,18 +129,10 @@ pub fn read(
         draft.log.add(code, site, format!("`{file}`: {message}"), expected);
         None
     };
-    let text = match draft.sources.read(site.place.source, file) {
-        Ok(text) => text,
-        Err(error) => {
-            let is_missing = error.kind() == std::io::ErrorKind::NotFound;
-            let code = if is_missing { Code::NotFound } else { Code::Unreadable };
-            return refuse(code, error.to_string(), "a table, as `souple sweep` writes it");
-        }
-    };
+    let text = text_of(draft, (site, file), "a table, as `souple sweep` writes it")?;
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let head = lines.next().map_or("", |(_, line)| line);
-    let columns: Vec<&str> =
-        head.split(',').map(|cell| cell.trim().split(" [").next().unwrap_or_default()).collect();
+    let columns = column_names(head);
     let column_of = |name: &str| columns.iter().skip(names.len()).position(|known| *known == name);
     let Some(column) = column_of(control).filter(|_| columns.starts_with(names)) else {
         let expected = format!("columns {}, `{control} [N]` and `value [s]`", names.join(", "));
