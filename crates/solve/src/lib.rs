@@ -20,6 +20,7 @@ mod ordering;
 mod partition;
 mod pattern;
 pub mod precondition;
+pub mod quadratic;
 pub mod reduce;
 pub mod ritz;
 pub mod solvers;

@@ -1,0 +1,39 @@
+//! Dense symmetric systems, of which some rows may say what others do.
+
+use super::dot;
+
+/// A pivot below this share of the greatest belongs to a row that others say already.
+const PIVOT: f64 = 1e-15;
+
+/// A Cholesky factor by rows; a row that others say already is left out.
+pub(super) struct Factor {
+    rows: Vec<Vec<f64>>,
+}
+
+impl Factor {
+    pub fn of(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let mut rows: Vec<Vec<f64>> = (0..count).map(|i| (0..=i).map(|j| entry(i, j)).collect()).collect();
+        let greatest = rows.iter().map(|row| row[row.len() - 1]).fold(0.0, f64::max);
+        for i in 0..count {
+            let (above, rest) = rows.split_at_mut(i);
+            let row = &mut rest[0];
+            for (j, of) in above.iter().enumerate() {
+                row[j] = (row[j] - dot(&row[..j], &of[..j])) / of[j];
+            }
+            let pivot = row[i] - dot(&row[..i], &row[..i]);
+            row[i] = if pivot > PIVOT * greatest { pivot.sqrt() } else { f64::INFINITY };
+        }
+        Self { rows }
+    }
+
+    pub fn solve(&self, right: &mut [f64]) {
+        for (i, row) in self.rows.iter().enumerate() {
+            right[i] = (right[i] - dot(&row[..i], &right[..i])) / row[i];
+        }
+        for (i, row) in self.rows.iter().enumerate().rev() {
+            let solved = right[i] / row[i];
+            right[i] = solved;
+            right.iter_mut().zip(&row[..i]).for_each(|(right, entry)| *right -= entry * solved);
+        }
+    }
+}
