@@ -20,7 +20,10 @@ use std::path::PathBuf;
 pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
-pub use motion::{Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner};
+pub use motion::{
+    Attempt, Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner, Spacetime, Watch, When, Windows,
+    with_unit,
+};
 pub use state_space::{FoundTable, Span, Tabulation, Tabulator};
 pub use study::{Graph, Plan, Study};
 pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
@@ -43,6 +46,10 @@ pub enum SweepError {
         "the plan asks for {wanted} N of `{name}`, whose actuator gives {largest} N at most; expected later keys, or a stronger actuator"
     )]
     Beyond { name: String, wanted: f64, largest: f64 },
+    #[error(
+        "no motion near at hand meets all keys{bounds}: {missed}; expected later keys, wider bands, stronger actuators, or other starts"
+    )]
+    Unmet { missed: String, bounds: String },
     #[error("{}: {source}", .path.display())]
     Database { path: PathBuf, source: rusqlite::Error },
     #[error("{}: it holds results of `{found}`, not of `{wanted}`; expected a file of this study, or a new one", .path.display())]

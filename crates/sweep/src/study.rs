@@ -37,13 +37,13 @@ enum Sought {
 }
 
 impl Sought {
-    fn read(value: &Value) -> Result<Self, SweepError> {
+    fn read(value: &Value, folder: &Path) -> Result<Self, SweepError> {
         let Value::Table(table) = value else {
             return Err(SweepError::value("plan", value.to_string(), "a table"));
         };
         match table.get("kind").and_then(Value::as_str) {
             Some("state_space") => Tabulation::read(table).map(Self::Table),
-            _ => Motion::read(table).map(Self::Motion),
+            _ => Motion::read(table, folder).map(Self::Motion),
         }
     }
 }
@@ -105,7 +105,7 @@ impl Study {
         {
             return Err(SweepError::value(other, "there beside `fit`", "a study of runs, or one of a fit"));
         }
-        let plan = document.get("plan").map(Sought::read).transpose()?;
+        let plan = document.get("plan").map(|plan| Sought::read(plan, folder)).transpose()?;
         let others = ["vary", "table", "graphs", "fit", "steps"];
         if let (Some(_), Some(other)) = (&plan, others.into_iter().find(|key| document.contains_key(*key))) {
             return Err(SweepError::value(other, "there beside `plan`", "a study of a plan alone"));

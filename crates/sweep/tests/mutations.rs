@@ -19,13 +19,17 @@ fn mutated_studies_are_read_or_refused() {
         "title = \"a\"\nscene = \"x.toml\"\nsteps = 20\nsettings = [\"a.b=0\"]\n[vary]\n\"w.g\" = [[0, -9.81, 0], [0, 1, 0]]\n\
          \"w.p\" = [\"10 ms\", 5]\n[graphs.fall]\nx = \"w.p\"\ny = \"place.y\"\nlines = \"w.g\"\nlogarithmic = \"xy\"\n",
         "scene = \"x.toml\"\ntable = \"runs.csv\"\n",
+        "scene = \"x.toml\"\n[plan]\nkind = \"spacetime\"\nstarts = 3\nseed = 4\nstart = \"a.csv\"\n\
+         windows = [{ from = 0, until = 1 }]\n[[plan.keys]]\ntime = 2\nprobe = \"a.x\"\nvalue = 1\n\
+         [[plan.keys]]\nfrom = 0\nuntil = \"2 s\"\nprobe = \"b\"\nleast = 0\nmost = 3\n",
     ]);
     let tables = bytes([
         "a.b,c.d[0],e\n1,\"[1, 2]\",x\n\n5 kPa,tet4,\"a \"\"b\"\"\"\n",
         "\"a.b\",\"c,d\"\n1e3,true\n2,1979-05-27\n",
     ]);
     let words = bytes([
-        "scene", "table", "vary", "graphs", "steps", "settings", "x", "y", "lines", "\"", ",", "[", "]",
+        "scene", "table", "vary", "plan", "windows", "least", "graphs", "steps", "settings", "x", "y",
+        "lines", "\"", ",", "[", "]",
     ]);
     let mut read = 0;
     let cases = repeat(4000, |seed| {

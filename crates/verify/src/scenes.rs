@@ -16,6 +16,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("block_on_springs", include_str!("../../../scenes/block_on_springs/scene.toml")),
     ("block_rheometer", include_str!("../../../scenes/block_rheometer/scene.toml")),
     ("blown_strip", include_str!("../../../scenes/blown_strip/scene.toml")),
+    ("bounded_cart", include_str!("../../../scenes/bounded_cart/scene.toml")),
     ("bow", include_str!("../../../scenes/bow/scene.toml")),
     ("braced_truss", include_str!("../../../scenes/braced_truss/scene.toml")),
     ("brick_stack", include_str!("../../../scenes/brick_stack/scene.toml")),
@@ -196,6 +197,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("two_contours", include_str!("../../../scenes/two_contours/scene.toml")),
     ("two_fleshes", include_str!("../../../scenes/two_fleshes/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
+    ("two_posts", include_str!("../../../scenes/two_posts/scene.toml")),
     ("two_slopes", include_str!("../../../scenes/two_slopes/scene.toml")),
     ("two_steppers", include_str!("../../../scenes/two_steppers/scene.toml")),
     ("vibrating_modes", include_str!("../../../scenes/vibrating_modes/scene.toml")),
@@ -207,6 +209,7 @@ pub const SCENES: &[(&str, &str)] = &[
 
 /// `(scene, file, text)` of the plans and meshes that scenes name.
 const FILES: &[(&str, &str, &str)] = &[
+    ("bounded_cart", "motion.plan.csv", include_str!("../../../scenes/bounded_cart/motion.plan.csv")),
     ("cooks_membrane", "cook_hex8.msh", include_str!("../../../scenes/cooks_membrane/cook_hex8.msh")),
     ("cooks_membrane", "cook_tet4.msh", include_str!("../../../scenes/cooks_membrane/cook_tet4.msh")),
     ("crane", "motion.plan.csv", include_str!("../../../scenes/crane/motion.plan.csv")),
@@ -216,6 +219,7 @@ const FILES: &[(&str, &str, &str)] = &[
     ("regulated_cart", "motion.plan.csv", include_str!("../../../scenes/regulated_cart/motion.plan.csv")),
     ("steered_cart", "motion.plan.csv", include_str!("../../../scenes/steered_cart/motion.plan.csv")),
     ("swing_up", "table.csv", include_str!("../../../scenes/swing_up/table.csv")),
+    ("two_posts", "motion.plan.csv", include_str!("../../../scenes/two_posts/motion.plan.csv")),
 ];
 
 /// Names and texts of the files that a scene names.

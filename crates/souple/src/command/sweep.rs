@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Ending, Fit, Kind, Motion, Planner, Progress, Search, Study, SweepError, Tabulation, Tabulator,
-    Unknown, Workers, fingerprints, graphs, sweep as make_runs, table_of,
+    Database, Ending, Fit, FoundMotion, KeyState, Kind, Motion, Planner, Progress, Search, Study, SweepError,
+    Tabulation, Tabulator, Unknown, When, Workers, fingerprints, graphs, sweep as make_runs, table_of,
+    with_unit,
 };
 use souple_table::counted;
 
@@ -48,7 +49,9 @@ impl From<SweepError> for Refusal {
             SweepError::Scene { settings, .. } => {
                 Self::request("study", settings, "values that the scene takes", message)
             }
-            SweepError::Failed { .. } | SweepError::Beyond { .. } => Self::work("run", message),
+            SweepError::Failed { .. } | SweepError::Beyond { .. } | SweepError::Unmet { .. } => {
+                Self::work("run", message)
+            }
             SweepError::OtherStudy { found, .. } => {
                 Self::request("database", found, "a file of this study", message)
             }
@@ -217,15 +220,24 @@ fn identify(arguments: &Arguments, study: &Study, fit: &Fit) -> Result<End, Refu
 
 /// Looks for the commands of a plan, and writes them where a scene may read them.
 fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Refusal> {
-    refuse_options(arguments, "plan", &["--out"])?;
+    let how = match &motion.kind {
+        Kind::Spacetime(how) => Some(how),
+        Kind::LinearQuadratic { .. } => None,
+    };
+    let has_starts = how.is_some_and(|how| how.starts > 1);
+    refuse_options(arguments, "plan", if has_starts { &["--jobs", "--out"] } else { &["--out"] })?;
     let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("plan.csv"));
-    keep_inputs(&out, &[&arguments.study, &study.scene])?;
+    let start = how.and_then(|how| how.start.as_ref());
+    let inputs: Vec<&PathBuf> = [&arguments.study, &study.scene].into_iter().chain(start).collect();
+    keep_inputs(&out, &inputs)?;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let meter = Meter::new("iterations", arguments.quiet);
-    let mut watch = |iterations: usize, cost: f64, miss: f64| {
+    let watch = |iterations: usize, cost: f64, miss: f64| {
         meter.show(iterations as u64, motion.iterations as u64, format!("cost {cost:.4e}, miss {miss:.1e}"));
     };
-    let found = Planner { study, motion, stop: &interruption }.run(&mut watch)?;
+    let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
+    let found = Planner { study, motion, count, stop: &interruption }.run(&watch)?;
     drop(meter);
     let Some(found) = found else { return Ok(End::Interrupted) };
     let columns = found.columns();
@@ -233,36 +245,11 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     keep_others(&out, &names)?;
     souple_io::write_csv(&out, &columns)?;
     if arguments.json {
-        let keys = motion.keys.iter().zip(&found.reached);
-        let keys = keys.map(|(key, reached)| {
-            json!({"time": key.time, "probe": key.probe.to_string(), "value": key.value, "reached": reached})
-        });
-        print_json(&json!({
-            "title": study.title,
-            "scene": study.scene.display().to_string(),
-            "controls": found.commands.iter().map(|(name, _)| name).collect::<Vec<_>>(),
-            "gains": found.gains.iter().map(|gain| &gain.number).collect::<Vec<_>>(),
-            "cost": found.cost,
-            "keys": keys.collect::<Vec<_>>(),
-            "iterations": found.iterations,
-            "steps": found.steps,
-            "converged": found.ending == Ending::Converged,
-            "files": [out.display().to_string()],
-        }));
+        print_json(&told(study, motion, &found, &out));
     } else if !arguments.quiet {
-        for (key, reached) in motion.keys.iter().zip(&found.reached) {
-            let (probe, value) = (key.probe.to_string(), key.value);
-            print_line(format_args!("{probe} at {} s: {reached:.9e}, for {value:.9e}", key.time));
-        }
-        print_line(format_args!(
-            "cost {:.9e}{}, {}, {} stepped",
-            found.cost,
-            if matches!(motion.kind, Kind::Spacetime) { " N² s" } else { "" },
-            counted(found.iterations as u64, "iteration"),
-            counted(found.steps as u64, "period")
-        ));
-        print_line(format_args!("  {}", out.display()));
+        print_plan(motion, &found, &out);
     }
+    found.warnings.iter().for_each(|warning| print_note(format_args!("warning: {warning}")));
     if found.ending == Ending::Converged {
         return Ok(End::Done);
     }
@@ -271,6 +258,73 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
         counted(found.iterations as u64, "iteration")
     ));
     Ok(End::Failed)
+}
+
+/// What was found of a plan, as JSON.
+fn told(study: &Study, motion: &Motion, found: &FoundMotion, out: &Path) -> serde_json::Value {
+    let key = |(key, (reached, unit)): (&KeyState, (&f64, &&str))| {
+        let mut told = match key.when {
+            When::At(time) => json!({"time": time}),
+            When::During([from, until]) => json!({"from": from, "until": until}),
+        };
+        told["probe"] = json!(key.probe.to_string());
+        match key.band {
+            [low, high] if low == high => told["value"] = json!(low),
+            band => {
+                for (name, side) in
+                    ["least", "most"].into_iter().zip(band).filter(|(_, side)| side.is_finite())
+                {
+                    told[name] = json!(side);
+                }
+            }
+        }
+        told["reached"] = json!(reached);
+        told["unit"] = json!(unit);
+        told
+    };
+    let keys = motion.keys.iter().zip(found.reached.iter().zip(&found.units)).map(key);
+    let attempts = found.attempts.iter().map(|attempt| {
+        let message = Some(&attempt.message).filter(|message| !message.is_empty());
+        json!({"cost": attempt.cost, "message": message})
+    });
+    json!({
+        "title": study.title,
+        "scene": study.scene.display().to_string(),
+        "controls": found.commands.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        "gains": found.gains.iter().map(|gain| &gain.number).collect::<Vec<_>>(),
+        "cost": found.cost,
+        "keys": keys.collect::<Vec<_>>(),
+        "starts": attempts.collect::<Vec<_>>(),
+        "warnings": found.warnings,
+        "iterations": found.iterations,
+        "steps": found.steps,
+        "converged": found.ending == Ending::Converged,
+        "files": [out.display().to_string()],
+    })
+}
+
+fn print_plan(motion: &Motion, found: &FoundMotion, out: &Path) {
+    for (key, (reached, unit)) in motion.keys.iter().zip(found.reached.iter().zip(&found.units)) {
+        let reached = with_unit(&format!("{reached:.9e}"), unit);
+        print_line(format_args!("{} {}: {reached}, for {}", key.probe, key.when, key.wanted(unit)));
+    }
+    let unit = if matches!(motion.kind, Kind::Spacetime(_)) { "N² s" } else { "" };
+    print_line(format_args!(
+        "cost {}, {}, {} stepped",
+        with_unit(&format!("{:.9e}", found.cost), unit),
+        counted(found.iterations as u64, "iteration"),
+        counted(found.steps as u64, "period")
+    ));
+    for (cost, count) in found.answers() {
+        let of = counted(found.attempts.len() as u64, "start");
+        print_line(format_args!("{count} of {of} came to {}", with_unit(&format!("{cost:.6e}"), unit)));
+    }
+    let without = found.attempts.iter().filter(|attempt| attempt.cost.is_none()).count();
+    if without > 0 {
+        let of = counted(found.attempts.len() as u64, "start");
+        print_line(format_args!("{without} of {of} came to no motion that meets all keys"));
+    }
+    print_line(format_args!("  {}", out.display()));
 }
 
 /// Looks for the table of commands over a state space, and writes it where a scene may read it.

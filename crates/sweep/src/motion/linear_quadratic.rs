@@ -7,20 +7,23 @@
 
 use souple_engine::State;
 
+use super::course::{Course, Measured, Trajectory};
 use super::riccati::{Law, Matrix, Remainder, Stage};
-use super::{Coordinate, Cost, Course, DESCENT, DIFFERENCE, Gain, HALVINGS, Measured, Planner, Trajectory};
+use super::slopes::{Coordinate, DIFFERENCE};
+use super::{Cost, DESCENT, FoundMotion, Gain, HALVINGS, Planner, Watch};
 use crate::SweepError;
 use crate::least_squares::Ending;
-use crate::motion::FoundMotion;
 
 /// Coordinates, positions and velocities, at most: matrices of that size are multiplied in each period.
 const MOST_COORDINATES: usize = 120;
+/// Commands in all, at most.
+const MOST_COMMANDS: usize = 100_000;
 
 pub(super) fn search(
     planner: &Planner,
     costs: &[Cost],
     duration: Option<f64>,
-    watch: &mut dyn FnMut(usize, f64, f64),
+    watch: Watch,
 ) -> Result<FoundMotion, SweepError> {
     let course = Course::start(planner.study, planner.motion, planner.stop.clone(), duration)?;
     if course.coordinates.len() > MOST_COORDINATES {
@@ -31,10 +34,15 @@ pub(super) fn search(
         );
         return Err(SweepError::value("scene", found, expected));
     }
+    if course.periods.saturating_mul(course.controls.len()) > MOST_COMMANDS {
+        let found = format!("{} commands in {} periods", course.controls.len(), course.periods);
+        return Err(SweepError::value("plan.keys", found, format!("at most {MOST_COMMANDS} in all")));
+    }
     let mut regulator = Regulator::new(planner, course, costs)?;
     let commands = vec![0.0; regulator.course.periods * regulator.course.controls.len()];
     let mut now = regulator.course.follow(commands)?;
     regulator.refuse_what_is_not_read(&now)?;
+    regulator.course.refuse_what_remembers(&now)?;
     let mut paid = regulator.paid(&now)?;
     let (mut iterations, mut ending) = (0, Ending::OutOfIterations);
     let mut policy = regulator.policy(&now)?;
@@ -52,8 +60,10 @@ pub(super) fn search(
         policy = regulator.policy(&now)?;
         watch(iterations, paid, regulator.greatest_miss(&now));
     }
+    regulator.course.refuse_what_remembers(&now)?;
+    regulator.course.refuse_what_is_cut(&now)?;
     let gains = regulator.gains(&now, &policy)?;
-    regulator.course.found(now, (iterations, ending), paid, gains)
+    Ok(regulator.course.found(planner.motion, now, (iterations, ending), paid, gains))
 }
 
 struct Regulator {
@@ -62,6 +72,8 @@ struct Regulator {
     costs: Vec<(Measured, f64, f64)>,
     /// Of each key; `None`: it is to be met.
     key_weights: Vec<Option<f64>>,
+    /// Of each key.
+    values: Vec<f64>,
     period: f64,
 }
 
@@ -81,6 +93,7 @@ impl Regulator {
         Ok(Self {
             costs: costs.collect::<Result<_, SweepError>>()?,
             key_weights: planner.motion.keys.iter().map(|key| key.weight).collect(),
+            values: planner.motion.keys.iter().map(|key| key.band[0]).collect(),
             period: course.world.model().period,
             course,
         })
@@ -111,7 +124,7 @@ impl Regulator {
                 paid += weight * (self.course.measure(measured, state)? - value).powi(2);
             }
         }
-        let misses = motion.reached.iter().zip(&self.course.values).map(|(found, value)| found - value);
+        let misses = motion.reached.iter().zip(&self.values).map(|(found, value)| found - value);
         let of_keys = self.key_weights.iter().zip(misses);
         Ok(paid * self.period
             + of_keys.map(|(weight, miss)| weight.unwrap_or(0.0) * miss * miss).sum::<f64>())
@@ -119,36 +132,36 @@ impl Regulator {
 
     /// The greatest miss of keys that are to be met.
     fn greatest_miss(&self, motion: &Trajectory) -> f64 {
-        let misses =
-            motion.reached.iter().zip(&self.course.values).map(|(found, value)| (found - value).abs());
+        let misses = motion.reached.iter().zip(&self.values).map(|(found, value)| (found - value).abs());
         let exact = misses.zip(&self.key_weights).filter(|(_, weight)| weight.is_none());
         exact.fold(0.0, |most, (miss, _)| most.max(miss))
     }
 
     fn policy(&mut self, now: &Trajectory) -> Result<Policy, SweepError> {
-        let [position, velocity, command] = self.course.differences(now);
+        let differences = self.course.differences(now);
+        let steps = &differences.coordinates;
         let count = self.course.controls.len();
         let prices: Vec<f64> = self.course.weights.iter().map(|weight| 2.0 * self.period * weight).collect();
         let mut left = Remainder::none(self.course.coordinates.len());
-        self.add_keys(&mut left, now, self.course.periods, [position, velocity])?;
+        self.add_keys(&mut left, now, self.course.periods, steps)?;
         let mut laws = Vec::with_capacity(self.course.periods);
         for period in (0..self.course.periods).rev() {
             let commands = &now.commands[period * count..(period + 1) * count];
             let state = &now.states[period];
-            let of_state = self.of_state(state, commands, [position, velocity])?;
-            let of_commands = self.of_commands(state, commands, command)?;
+            let of_state = self.of_state(state, commands, steps)?;
+            let of_commands = self.of_commands(state, commands, differences.command)?;
             let stage = Stage { of_state: &of_state, of_commands: &of_commands, commands, prices: &prices };
             laws.push(left.step_back(&stage).ok_or_else(no_finite_gains)?);
             for index in 0..self.costs.len() {
                 let (measured, value, weight) = self.costs[index].clone();
-                let gradient = self.course.gradient(&measured, state, [position, velocity])?;
+                let gradient = self.course.gradient(&measured, state, steps)?;
                 let miss = self.course.measure(&measured, state)? - value;
                 left.add_cost(weight * self.period, &gradient, miss);
             }
-            self.add_keys(&mut left, now, period, [position, velocity])?;
+            self.add_keys(&mut left, now, period, steps)?;
         }
         if let Some(key) = left.unmet() {
-            return Err(Course::key_that_is_not_reached(key));
+            return Err(self.course.key_that_is_not_reached(key));
         }
         laws.reverse();
         let (less, multipliers) = left.forecast().ok_or_else(no_finite_gains)?;
@@ -161,11 +174,11 @@ impl Regulator {
         left: &mut Remainder,
         now: &Trajectory,
         period: usize,
-        steps: [f64; 2],
+        steps: &[f64],
     ) -> Result<(), SweepError> {
         for (key, measured) in self.course.keys_at(period) {
             let gradient = self.course.gradient(&measured, &now.states[period], steps)?;
-            let miss = now.reached[key] - self.course.values[key];
+            let miss = now.reached[key] - self.values[key];
             match self.key_weights[key] {
                 Some(weight) => left.add_cost(weight, &gradient, miss),
                 None => left.add_key(key, gradient, miss),
@@ -175,14 +188,13 @@ impl Regulator {
     }
 
     /// `A`
-    fn of_state(&mut self, state: &State, commands: &[f64], steps: [f64; 2]) -> Result<Matrix, SweepError> {
+    fn of_state(&mut self, state: &State, commands: &[f64], steps: &[f64]) -> Result<Matrix, SweepError> {
         let all = self.course.coordinates.clone();
         let mut matrix = vec![Vec::with_capacity(all.len()); all.len()];
-        for coordinate in &all {
-            let by = steps[usize::from(coordinate.is_velocity)];
-            let ahead = self.course.step(coordinate.moved(state, by), commands)?;
+        for (coordinate, by) in all.iter().zip(steps) {
+            let ahead = self.course.step(coordinate.moved(state, *by), commands)?;
             let behind = self.course.step(coordinate.moved(state, -by), commands)?;
-            add_column(&mut matrix, &all, (&ahead, &behind), by);
+            add_column(&mut matrix, &all, (&ahead, &behind), *by);
         }
         Ok(matrix)
     }
@@ -233,7 +245,7 @@ impl Regulator {
             whole => whole?,
         };
         let change: Vec<f64> = whole.commands.iter().zip(&now.commands).map(|(to, from)| to - from).collect();
-        let [.., command] = self.course.differences(now);
+        let command = self.course.differences(now).command;
         let told = self.course.cost(&vec![command * DIFFERENCE; now.commands.len()]);
         Ok(self.course.cost(&change) <= tolerance.powi(2) * self.course.cost(&whole.commands) + told)
     }
@@ -245,7 +257,7 @@ impl Regulator {
         paid: f64,
         policy: &Policy,
     ) -> Result<Option<(Trajectory, f64)>, SweepError> {
-        let values = self.course.values.clone();
+        let values = self.values.clone();
         let missed = |motion: &Trajectory| -> f64 {
             let of =
                 |(key, worth): &(usize, f64)| 2.0 * worth.abs() * (motion.reached[*key] - values[*key]).abs();
@@ -277,7 +289,7 @@ impl Regulator {
                 if gains.iter().all(|gain| *gain == 0.0) {
                     continue;
                 }
-                if coordinate.system != control.system || !control.rows.contains(&coordinate.point) {
+                if coordinate.system() != control.system || !control.rows.contains(&coordinate.point()) {
                     let found =
                         format!("such that `{}` answers to what is no mass of its network", control.name);
                     let expected = "one network with all that depends on each other";
@@ -285,8 +297,8 @@ impl Regulator {
                 }
                 columns.push(Gain {
                     control: control.name.clone(),
-                    number: number(&control.body, coordinate.point - control.rows.start, coordinate),
-                    is_velocity: coordinate.is_velocity,
+                    number: number(&control.body, coordinate.point() - control.rows.start, coordinate),
+                    is_velocity: coordinate.is_velocity(),
                     planned: now.states.iter().map(|state| coordinate.of(state)).collect(),
                     gains,
                 });
@@ -308,6 +320,6 @@ fn add_column(matrix: &mut Matrix, all: &[Coordinate], (ahead, behind): (&State,
 }
 
 fn number(body: &str, mass: usize, coordinate: &Coordinate) -> String {
-    let of = if coordinate.is_velocity { "v." } else { "" };
-    format!("{body}[{mass}].{of}{}", ["x", "y", "z"][coordinate.component])
+    let of = if coordinate.is_velocity() { "v." } else { "" };
+    format!("{body}[{mass}].{of}{}", ["x", "y", "z"][coordinate.component()])
 }

@@ -1,7 +1,7 @@
 //! Actuators that controls command.
 
 use super::network::OSCILLATOR;
-use crate::{Case, Reading, Tolerance};
+use crate::{Case, Reading, Statistic, Tolerance};
 
 const CARTS: Case = Case {
     capabilities: &["JIM-97"],
@@ -19,6 +19,21 @@ const PLANNED: Case = Case {
     tolerance: Tolerance::Absolute(1e-12),
     mutation: "networks.cart.masses.cart.mass=2.001",
     ..CARTS
+};
+
+const BOUNDED: Case = Case {
+    scene: "bounded_cart",
+    source: "specification §6.3, PA-45: the least Σ f² subject to the discretised equations of motion at all times, and to |f| ≤ F",
+    ..PLANNED
+};
+
+const POSTS: Case = Case {
+    scene: "two_posts",
+    source: "specification §6.3, PA-45: spacetime constraints, inequalities at all times",
+    // commands change by a millionth at most in the last step, of which keys see the square; printed to the last bit
+    tolerance: Tolerance::Absolute(1e-6),
+    mutation: "networks.table.masses.puck.mass=1.01",
+    ..PLANNED
 };
 
 const REGULATED: Case = Case {
@@ -93,6 +108,35 @@ pub(super) const CASES: &[Case] = &[
         // h/m Σ_{n<N/2} λ ((N − 1)/2 − n) = λ h N²/8m, λ = 12 m d/(h² N (N² − 1)): 3 d N/(2 h (N² − 1))
         reference: 3.0 * 100.0 / (2.0 * 0.02 * (100.0 * 100.0 - 1.0)),
         ..PLANNED
+    },
+    Case {
+        id: "bounded_cart_arrives",
+        what: "where a cart is half a second past the end of a plan that asks no more of its motor than it gives",
+        reading: Reading::last("place"),
+        reference: 2.0,
+        ..BOUNDED
+    },
+    Case {
+        id: "bounded_cart_halfway",
+        what: "its speed halfway",
+        reading: Reading::last("speed").after(50),
+        // h/m Σ_{n<N/2} min(F, λ a_n), a_n = (N − 1)/2 − n, λ = (m d/2 h² − F Σ_{n<11} a_n)/Σ_{11≤n<N/2} a_n²
+        reference: 1.531_892_158_474_437_2,
+        ..BOUNDED
+    },
+    Case {
+        id: "puck_keeps_from_posts",
+        what: "how near a puck comes to the middle of the first post, when it is planned to keep 0.4 m away",
+        reading: Reading::last("from_first").taking(Statistic::Min),
+        reference: 0.4,
+        ..POSTS
+    },
+    Case {
+        id: "puck_arrives",
+        what: "where it is at the end of its plan",
+        reading: Reading::component("place", 0).after(50),
+        reference: 2.0,
+        ..POSTS
     },
     Case {
         id: "crane_arrives",
