@@ -47,7 +47,7 @@ pub enum SweepError {
     )]
     Beyond { name: String, wanted: f64, largest: f64 },
     #[error(
-        "no motion near at hand meets all keys{bounds}: {missed}; expected later keys, wider bands, stronger actuators, or other starts"
+        "no motion near at hand meets all keys{bounds}: {missed}; expected later keys, wider bands, stronger actuators, or other starts or windows"
     )]
     Unmet { missed: String, bounds: String },
     #[error("{}: {source}", .path.display())]
