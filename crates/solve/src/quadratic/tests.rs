@@ -114,7 +114,7 @@ fn conditions_of_a_least_are_met() {
             slopes[rows - 1] = slopes[0].clone();
             slopes[1] = slopes[0].iter().map(|slope| slope + 1e-5 * random(&mut seed)).collect();
         }
-        let width = |at: usize, seed: &mut u64| if at % 2 == 0 { 0.0 } else { random(seed).abs() };
+        let width = |at: usize, seed: &mut u64| if at.is_multiple_of(2) { 0.0 } else { random(seed).abs() };
         let program = QuadraticProgram {
             curvature: (0..count).map(|_| (2.0 * random(&mut seed)).exp()).collect(),
             gradient: (0..count).map(|_| random(&mut seed)).collect(),

@@ -435,7 +435,7 @@ impl<'a> Search<'a> {
 fn ranges(windows: &Windows, periods: usize, period: f64) -> Result<Vec<Range<usize>>, SweepError> {
     let first_from = |time: f64| (time / period - OFF).ceil() as usize;
     match windows {
-        Windows::Whole => Ok(vec![0..periods]),
+        Windows::Whole => Ok(std::iter::once(0..periods).collect()),
         Windows::Each(spans) => {
             let each = spans.iter().enumerate().map(|(index, [from, until])| {
                 let window = first_from(*from)..first_from(*until).min(periods);
