@@ -186,6 +186,11 @@ fn what_cannot_be_planned_is_named() {
         ),
         ("kind =", "starts = 0\nkind =", "`plan.starts` is 0; expected a whole number above 0"),
         ("kind =", "seed = 3\nkind =", "`plan.seed` is there beside one start"),
+        (
+            "time = 2",
+            "from = 0\nuntil = 60",
+            "`plan.keys` is 6000 and 3000 commands that are sought at once; expected at most 2000",
+        ),
         ("kind =", "start = \"none.csv\"\nkind =", "none.csv: No such file"),
         ("kind =", "start = \"motion.toml\"\nkind =", "motion.toml` is without a column `cart.drive [N]`"),
         (

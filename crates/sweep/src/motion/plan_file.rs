@@ -64,3 +64,49 @@ fn commands(
     let last = last.ok_or_else(|| SweepError::value(place, "without rows", "a row for each period"))?;
     Ok((0..periods).flat_map(|at| rows[at.min(last)].clone()).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use souple_scene::Planned;
+
+    use super::*;
+
+    fn controls() -> Vec<PlannedControl> {
+        let control = |name: &str| PlannedControl {
+            name: name.to_owned(),
+            driven: 0,
+            largest: 1.0,
+            body: "cart".to_owned(),
+            system: 0,
+            rows: 0..1,
+            by: Planned::Time,
+        };
+        vec![control("cart.a"), control("cart.b")]
+    }
+
+    /// Columns are found by their names, and the last row goes on.
+    #[test]
+    fn plans_are_read_period_by_period() {
+        let text = "time [s],cart.b [N],x [m],cart.a [N]\n0,1,9,2\n\n0.5,3,9,4\n";
+        let found = commands("plan.csv", text, &controls(), 3, 0.5).unwrap();
+        assert_eq!(found, [2.0, 1.0, 4.0, 3.0, 4.0, 3.0]);
+    }
+
+    /// A row that is not of its period, short, or no number is named.
+    #[test]
+    fn faults_of_plans_are_named() {
+        for (text, words) in [
+            ("", "`plan.csv` is without a column `cart.a [N]`"),
+            ("time [s],cart.a [N],cart.b [N]\n", "`plan.csv` is without rows"),
+            (
+                "time [s],cart.a [N],cart.b [N]\n0,1,2\n0.4,1,2",
+                "is `0.4,1,2` in line 3; expected 3 finite numbers",
+            ),
+            ("time [s],cart.a [N],cart.b [N]\n0,1", "is `0,1` in line 2"),
+            ("time [s],cart.a [N],cart.b [N]\n0,1,inf", "is `0,1,inf` in line 2"),
+        ] {
+            let error = commands("plan.csv", text, &controls(), 2, 0.5).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}
