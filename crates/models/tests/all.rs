@@ -16,6 +16,7 @@ mod materials;
 mod multiresolution;
 mod network;
 mod octree;
+mod polyhedra;
 mod rooms;
 mod sections;
 mod solids;

@@ -11,6 +11,7 @@ use souple_models::marks::Mark;
 use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use crate::Session;
+use crate::links::RADIUS;
 use crate::output::{FRAMES, OutputError, OutputFolder};
 use crate::show::{BLOOD, Moment, TISSUE};
 
@@ -21,7 +22,7 @@ pub struct Frames {
     skins: Vec<Series>,
     dresses: Vec<Series>,
     /// Of all bodies, one after the other.
-    contours: Vec<Series>,
+    outlines: Vec<Series>,
     /// Of bodies that frames carry, with their numbers.
     carriers: Vec<(usize, Series)>,
     /// Steps between frames.
@@ -40,7 +41,7 @@ impl Frames {
         steps: u64,
     ) -> Result<Self, OutputError> {
         let (mut bodies, mut skins) = (Vec::new(), Vec::new());
-        let (mut dresses, mut contours, mut carriers) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut dresses, mut outlines, mut carriers) = (Vec::new(), Vec::new(), Vec::new());
         let mut path = PathBuf::new();
         if let Some(folder) = folder.filter(|_| count > 0) {
             path = folder.frames()?;
@@ -49,7 +50,7 @@ impl Frames {
             skins = session.skins.iter().map(|skin| Series::new(&path, name(skin))).collect();
             let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
             dresses = worn.map(|dress| Series::new(&path, worn_by(&dress.body))).collect();
-            contours = names_of_contours(&session.bodies).map(|name| Series::new(&path, name)).collect();
+            outlines = names_of_outlines(&session.bodies).map(|name| Series::new(&path, name)).collect();
             let carried = session.bodies.iter().enumerate().filter(|(_, body)| body.frames.is_some());
             let series =
                 |(index, body): (usize, &BodyInfo)| (index, Series::new(&path, carriers_of(&body.name)));
@@ -61,7 +62,7 @@ impl Frames {
             bodies,
             skins,
             dresses,
-            contours,
+            outlines,
             carriers,
             every,
             last_written: None,
@@ -136,9 +137,13 @@ impl Frames {
             let (mesh, fields) = mesh_of_dress(dress, &session.world);
             push(folder, series, moment.time, &as_it_stands(&mesh, &fields))?;
         }
-        let own = moment.bodies.iter().rev().take(self.contours.len()).rev();
-        for (series, contour) in self.contours.iter_mut().zip(own) {
-            push(folder, series, moment.time, &as_it_stands(&contour.mesh, &[]))?;
+        let own = moment.bodies.iter().rev().take(self.outlines.len()).rev();
+        for (series, outline) in self.outlines.iter_mut().zip(own) {
+            let output = Output {
+                cell_fields: &outline.cell_fields,
+                ..as_it_stands(&outline.mesh, &outline.point_fields)
+            };
+            push(folder, series, moment.time, &output)?;
         }
         for (index, series) in &mut self.carriers {
             let (mesh, fields) = mesh_of_carriers(&moment.bodies[*index].frames);
@@ -190,6 +195,17 @@ pub fn worn_by(body: &str) -> String {
     format!("{body}.skin")
 }
 
+/// The field of the faces of a network that tells which body each is of.
+pub const PART: &str = "part";
+
+/// What the name of the files of a network's faces ends in.
+const FACES: &str = "faces";
+
+/// The name of the files of the faces of bodies in a network.
+pub fn faces_of(network: &str) -> String {
+    format!("{network}.{FACES}")
+}
+
 /// The name of the files of the frames that carry a body.
 pub fn carriers_of(body: &str) -> String {
     format!("{body}.frames")
@@ -225,18 +241,40 @@ pub fn name_of_skin(skin: &SkinInfo, bodies: &[BodyInfo]) -> String {
     if is_worn { worn_by(&skin.name) } else { skin.name.clone() }
 }
 
-/// The names of the files of contours, body by body: `NETWORK.CONTOUR`.
-pub fn names_of_contours(bodies: &[BodyInfo]) -> impl Iterator<Item = String> + '_ {
-    bodies
-        .iter()
-        .flat_map(|body| body.contours.iter().map(|contour| format!("{}.{}", body.name, contour.name)))
+/// The names of the files of what networks have beside masses and links, body by body: `NETWORK.faces` and `NETWORK.CONTOUR`.
+pub fn names_of_outlines(bodies: &[BodyInfo]) -> impl Iterator<Item = String> + '_ {
+    bodies.iter().flat_map(|body| {
+        let faces = body.faces.as_ref().map(|_| FACES).into_iter();
+        let contours = body.contours.iter().map(|contour| contour.name.as_str());
+        faces.chain(contours).map(|name| format!("{}.{name}", body.name))
+    })
 }
 
-/// The lines of contours as they stand, body by body.
-pub fn meshes_of_contours(bodies: &[BodyInfo], world: &World) -> Vec<Mesh> {
+/// What a network has beside masses and links, as it stands, with its fields.
+#[derive(Default)]
+pub struct Outline {
+    pub mesh: Mesh,
+    pub point_fields: Vec<Field>,
+    pub cell_fields: Vec<Field>,
+}
+
+/// The faces and the lines of contours as they stand, body by body.
+pub fn outlines(bodies: &[BodyInfo], world: &World) -> Vec<Outline> {
     let of_body = |body: &BodyInfo| {
         let positions = &world.rows(body.system).positions;
-        body.contours.iter().map(|contour| closed_lines(&contour.places(positions))).collect::<Vec<_>>()
+        let faces = body.faces.as_ref().map(|faces| {
+            let points = positions[body.rows.clone()].to_vec();
+            let mesh = Mesh::new(points, ElementKind::Tri3, faces.triangles.as_flattened().to_vec());
+            let numbers = faces.numbers().map(f64::from).collect();
+            let (point_fields, _) = fields(world, body);
+            let point_fields = point_fields.into_iter().filter(|field| field.name != RADIUS).collect();
+            Outline { mesh, point_fields, cell_fields: vec![Field::new(PART, 1, numbers)] }
+        });
+        let contours = body
+            .contours
+            .iter()
+            .map(|contour| Outline { mesh: closed_lines(&contour.places(positions)), ..Outline::default() });
+        faces.into_iter().chain(contours).collect::<Vec<_>>()
     };
     bodies.iter().flat_map(of_body).collect()
 }

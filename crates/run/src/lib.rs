@@ -219,7 +219,7 @@ fn output_folder(
             let worn = body.dress.as_ref().map(|dress| frames::worn_by(&dress.body));
             [Some(body.name.clone()), carriers, worn].into_iter().flatten()
         })
-        .chain(frames::names_of_contours(bodies))
+        .chain(frames::names_of_outlines(bodies))
         .collect();
     let is_frame = |file: &str| {
         names.iter().any(|name| frames::is_frame_of(name, "vtu", file))

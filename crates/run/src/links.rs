@@ -2,6 +2,7 @@
 
 use souple_engine::{LinkShown, LinkState, World};
 use souple_io::Field;
+use souple_models::network::Constraints;
 use souple_scene::BodyInfo;
 
 /// The field of cells that tells the state of links, see [`state_number`].
@@ -15,9 +16,15 @@ pub fn links_of(world: &World, body: &BodyInfo) -> Vec<LinkShown> {
     if body.radii.is_empty() {
         return links;
     }
+    // rods of a rigid body are within its faces
+    let is_hidden = |ends: [u32; 2]| {
+        let of_body = ends.map(|end| end - body.rows.start as u32);
+        body.faces.as_ref().is_some_and(|faces| faces.holds(of_body))
+    };
     world.visit_forces(body.system, &mut |force, at| {
+        let is_exact = force.as_any().is::<Constraints>();
         force.visit_links(at, &mut |link| {
-            if body.rows.contains(&(link.ends[0] as usize)) {
+            if body.rows.contains(&(link.ends[0] as usize)) && !(is_exact && is_hidden(link.ends)) {
                 links.push(*link);
             }
         });

@@ -19,6 +19,7 @@ mod modes;
 mod modules;
 mod mutations;
 mod networks;
+mod polyhedra;
 mod quantities;
 mod rigid_contacts;
 mod scenes;

@@ -52,29 +52,52 @@ pub struct ImpactLaw {
     pub friction: f64,
 }
 
-/// The points of a contact, whose relative velocity is `Σ w v`.
+/// The points of a contact, whose relative velocity is `Σ w v`: weights of what is on one side add up to 1, those on the other to −1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides {
     rows: [u32; MOST_SIDES],
     weights: [f64; MOST_SIDES],
     count: usize,
+    /// How many of them are on the first side.
+    first: usize,
 }
 
 impl Sides {
     /// One point against what is no point.
     pub fn one(row: u32) -> Self {
-        Self { rows: [row, 0, 0, 0], weights: [1.0, 0.0, 0.0, 0.0], count: 1 }
+        Self::between([(row, 1.0)], [])
     }
 
     /// Two points.
     pub fn two([a, b]: [u32; 2]) -> Self {
-        Self { rows: [a, b, 0, 0], weights: [1.0, -1.0, 0.0, 0.0], count: 2 }
+        Self::between([(a, 1.0)], [(b, 1.0)])
+    }
+
+    /// Points with their shares of a place, against others with theirs; [`MOST_SIDES`] in all.
+    pub fn between<const A: usize, const B: usize>(first: [(u32, f64); A], second: [(u32, f64); B]) -> Self {
+        const { assert!(A + B <= MOST_SIDES) };
+        let mut sides = Self { rows: [0; MOST_SIDES], weights: [0.0; MOST_SIDES], count: A + B, first: A };
+        let all = first.into_iter().chain(second.map(|(row, share)| (row, -share)));
+        for (place, (row, weight)) in all.enumerate() {
+            (sides.rows[place], sides.weights[place]) = (row, weight);
+        }
+        sides
     }
 
     /// Rows with their weights.
     pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let rows = self.rows[..self.count].iter().map(|row| *row as usize);
         rows.zip(self.weights[..self.count].iter().copied())
+    }
+
+    /// Those of the first side, with their shares of the force.
+    pub fn first(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.iter().take(self.first)
+    }
+
+    /// Those of the second side, with their shares of the opposite force.
+    pub fn second(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.iter().skip(self.first).map(|(row, weight)| (row, -weight))
     }
 
     fn relative(&self, of_rows: impl Fn(usize) -> Vec3) -> Vec3 {
@@ -88,7 +111,8 @@ impl Sides {
 pub trait Unilateral: Send + Sync {
     fn contact_count(&self, pairs: &[Pair]) -> usize;
 
-    fn sides(&self, contact: usize, pairs: &[Pair]) -> Sides;
+    /// Its points where these are.
+    fn sides(&self, contact: usize, pairs: &[Pair], positions: &[Vec3]) -> Sides;
 
     /// `g(x, t)`, negative where it is closed too far.
     fn gap(&self, contact: usize, pairs: &[Pair], positions: &[Vec3], time: f64) -> f64;
@@ -205,8 +229,10 @@ fn described(step: &Step, state: &SystemState, (force, number): (usize, usize)) 
 }
 
 /// What of a contact a step cannot go on from.
-fn fault(step: &Step, state: &SystemState, of: (usize, usize), what: &str) -> StepError {
-    let sides = step.system.forces[of.0].unilateral().map(|it| it.sides(of.1, pairs_in(state, of.0)));
+fn fault(moving: &Moving, state: &SystemState, of: (usize, usize), what: &str) -> StepError {
+    let step = moving.step;
+    let unilateral = step.system.forces[of.0].unilateral();
+    let sides = unilateral.map(|it| it.sides(of.1, pairs_in(state, of.0), moving.positions));
     StepError::Fault {
         force: step.system.forces[of.0].name().to_owned(),
         row: sides.map_or(0, |sides| sides.rows[0] as usize),

@@ -27,7 +27,7 @@ impl ContactSystem {
             let Some(unilateral) = force.unilateral() else { continue };
             let (pairs, memory) = (pairs_in(state, index), &state.memory[system.memory_range(index)]);
             for number in 0..unilateral.contact_count(pairs) {
-                let sides = unilateral.sides(number, pairs);
+                let sides = unilateral.sides(number, pairs, moving.positions);
                 let slope = unilateral.slope(number, pairs, moving.positions, start);
                 let steepness = slope.length();
                 let value = unilateral.gap(number, pairs, moving.positions, start);
@@ -37,7 +37,7 @@ impl ContactSystem {
                 }
                 if !(value.is_finite() && steepness.is_finite()) {
                     let what = "has no value, or no slope, where masses are";
-                    return Err(fault(moving.step, state, (index, number), what));
+                    return Err(fault(moving, state, (index, number), what));
                 }
                 // points at one place part along x
                 let normal = slope.try_normalised().unwrap_or(Vec3::X);
@@ -139,7 +139,7 @@ impl ContactSystem {
         let Some(unilateral) = moving.step.system.forces[force].unilateral() else { return Ok(0.0) };
         let value = unilateral.gap(number, pairs_in(state, force), places, moving.step.end());
         if !value.is_finite() {
-            return Err(fault(moving.step, state, contact.of, "has no value where the step leads"));
+            return Err(fault(moving, state, contact.of, "has no value where the step leads"));
         }
         Ok(value / contact.steepness)
     }

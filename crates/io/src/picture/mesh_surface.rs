@@ -11,6 +11,9 @@ use super::surface::{Laid, Paint, Surface};
 use super::texture::Texture;
 use super::tubes::along;
 
+/// Sine of the angle below which two triangles lie in one plane.
+const FLAT: f64 = 1e-6;
+
 /// A place between two points of a mesh: `x = (1 - share) x_from + share x_to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
@@ -287,6 +290,29 @@ impl MeshSurface {
         }
         let middle = |[a, b]: &[u32; 2]| Between { from: *a, to: *b, share: 0.5 }.of(values);
         Cow::Owned(values.iter().copied().chain(self.middles.iter().map(middle)).collect())
+    }
+
+    /// Draws no edge between triangles that lie in one plane: they are of one face.
+    pub fn hide_flat_edges(&mut self) {
+        let Surface { points, triangles, edges, .. } = &mut self.surface;
+        let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).try_normalised();
+        let mut beside: HashMap<[u32; 2], Vec<Option<Vec3>>> = HashMap::new();
+        let side = |corners: &[u32; 3], at: usize| {
+            let (from, to) = (corners[at], corners[(at + 1) % 3]);
+            [from.min(to), from.max(to)]
+        };
+        for corners in triangles.iter() {
+            let normal = normal(corners.map(|corner| points[corner as usize]));
+            (0..3).for_each(|at| beside.entry(side(corners, at)).or_default().push(normal));
+        }
+        edges.resize(triangles.len(), [true; 3]);
+        for (corners, marks) in triangles.iter().zip(edges) {
+            for (at, mark) in marks.iter_mut().enumerate() {
+                if let [Some(one), Some(other)] = beside[&side(corners, at)][..] {
+                    *mark &= one.cross(other).length() > FLAT || one.dot(other) < 0.0;
+                }
+            }
+        }
     }
 
     /// Paints by a value for each cell of the mesh.

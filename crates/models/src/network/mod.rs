@@ -23,6 +23,7 @@ pub mod laws;
 mod layout;
 mod pair_tangent;
 mod piecewise;
+pub mod polyhedra;
 pub mod relations;
 mod rheology;
 pub mod rigid_balls;
@@ -45,6 +46,7 @@ pub use law::{AsksFor, BuildLink, LinkEntry, LinkError, LinkLaw, Making, Moment,
 pub use laws::LINKS;
 pub use layout::Ends;
 pub use piecewise::Piecewise;
+pub use polyhedra::{Entered, Polyhedra, PolyhedraDescription, Polyhedron};
 pub use rigid_balls::{RigidBalls, RigidBallsDescription};
 pub use sample::state_dimension;
 pub use sided::{Sense, Sided, SidedConstraints};

@@ -103,7 +103,7 @@ impl Unilateral for RigidBalls {
         pairs.len()
     }
 
-    fn sides(&self, contact: usize, pairs: &[Pair]) -> Sides {
+    fn sides(&self, contact: usize, pairs: &[Pair], _positions: &[Vec3]) -> Sides {
         Sides::two(ends(&pairs[contact]))
     }
 

@@ -5,6 +5,7 @@
 
 use std::any::Any;
 
+use souple_engine::unilateral::MOST_SIDES;
 use souple_engine::{
     Configuration, ContactPoint, Declaration, Energy, Force, ImpactLaw, LinkShown, LinkState, Pair, Scratch,
     Sides, TangentWeights, Unilateral,
@@ -73,7 +74,7 @@ impl Unilateral for SidedConstraints {
         self.relations.len()
     }
 
-    fn sides(&self, contact: usize, _pairs: &[Pair]) -> Sides {
+    fn sides(&self, contact: usize, _pairs: &[Pair], _positions: &[Vec3]) -> Sides {
         match self.relations[contact].rows() {
             [row] => Sides::one(*row),
             [a, b, ..] => Sides::two([*a, *b]),
@@ -148,7 +149,7 @@ impl Force for SidedConstraints {
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
         for contact in 0..self.relations.len() {
             let force = Unilateral::force(self, contact, at.memory, at.pairs);
-            for (row, weight) in self.sides(contact, at.pairs).iter() {
+            for (row, weight) in self.sides(contact, at.pairs, at.positions).iter() {
                 out[row] += force * weight;
             }
         }
@@ -215,21 +216,21 @@ pub(super) fn visit_contacts(of: &dyn Unilateral, at: &Configuration, visit: &mu
         let Some(normal) = slope.try_normalised().filter(|_| force != Vec3::ZERO) else { continue };
         let normal_force = normal * normal.dot(force);
         let gap = of.gap(contact, at.pairs, at.positions, at.time) / slope.length();
-        let sides = of.sides(contact, at.pairs);
-        let mut rows = sides.iter();
-        let Some((row, _)) = rows.next() else { continue };
-        let mut against = [(0, 0.0); souple_engine::unilateral::MOST_SIDES];
+        let sides = of.sides(contact, at.pairs, at.positions);
+        let mut against = [(0, 0.0); MOST_SIDES];
         let mut count = 0;
-        for (row, weight) in rows {
-            against[count] = (row as u32, -weight);
+        for (row, share) in sides.second() {
+            against[count] = (row as u32, share);
             count += 1;
         }
-        visit(&ContactPoint {
-            row: row as u32,
-            against: &against[..count],
-            penetration: (-gap).max(0.0),
-            normal_force,
-            friction: force - normal_force,
-        });
+        for (row, share) in sides.first() {
+            visit(&ContactPoint {
+                row: row as u32,
+                against: &against[..count],
+                penetration: (-gap).max(0.0),
+                normal_force: normal_force * share,
+                friction: (force - normal_force) * share,
+            });
+        }
     }
 }

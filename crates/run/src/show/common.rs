@@ -10,6 +10,7 @@ use souple_table::four_digits;
 
 use super::figure::{Arrows, Figure, Floor, Foot};
 use super::{BLOOD, BodyMoment, Moment, Show, ShowError, Stage, vectors};
+use crate::frames::PART;
 use crate::links::{LINK_STATE, RADIUS};
 
 /// Camera, colours and sizes.
@@ -390,6 +391,20 @@ impl BodyMoment {
     pub(super) fn link_states(&self) -> Option<&[f64]> {
         let field = self.cell_fields.iter().find(|field| field.name == LINK_STATE)?;
         (field.values.len() == self.mesh.cell_count()).then_some(field.values.as_slice())
+    }
+
+    /// Of the faces of bodies in a network the number of its body; `None` of what is no such thing.
+    pub(super) fn parts(&self) -> Option<&[f64]> {
+        let field = self.cell_fields.iter().find(|field| field.name == PART)?;
+        (field.values.len() == self.mesh.cell_count()).then_some(field.values.as_slice())
+    }
+
+    /// The faces of each body in a network, in the order of their numbers.
+    pub(super) fn split_by_part(&self) -> Vec<Self> {
+        let parts = self.parts().unwrap_or_default();
+        let last = parts.iter().copied().fold(-1.0, f64::max);
+        let part = |number: i64| self.clone().of_cells(|cell| parts[cell] == number as f64);
+        (0..=last as i64).map(part).collect()
     }
 
     /// Its points, each with its radius where it is a ball.

@@ -209,7 +209,7 @@ impl Figure {
                     labels.push(Label { at: frame[0], text: number.to_string() });
                 }
             }
-            let dots = self.dots_of(body, index, common.range);
+            let dots = self.dots_of(body, moment.faces_of(body), (index, common.range));
             has_dots |= !dots.is_empty();
             strokes.extend(dots);
         }
@@ -319,6 +319,19 @@ impl Figure {
                 let tubes = |state: u8| painted(body.tubes(common, self.cut, Some(f64::from(state))), state);
                 (0..=u8::MAX).filter(present).map(tubes).collect()
             }
+            None if values.is_none() && by_cell.is_none() && body.parts().is_some() => body
+                .split_by_part()
+                .iter()
+                .enumerate()
+                .map(|(part, body)| {
+                    let mut surface = self.surface(body, common).surface;
+                    surface.paint = match is_coloured {
+                        true => Paint::Plain(Colour::from_screen(NO_VALUE)),
+                        false => Paint::Plain(colour_of(index + part, 0)),
+                    };
+                    surface
+                })
+                .collect(),
             None => vec![painted(self.surface(body, common), 0)],
         };
         if let Some(radii) = body.radii() {
@@ -344,6 +357,9 @@ impl Figure {
             return body.tubes(common, self.cut, None);
         }
         let mut surface = self.bare_surface(body);
+        if body.parts().is_some() {
+            surface.hide_flat_edges();
+        }
         let hides = body.is_skin() && self.edges == EdgeStyle::Drawn;
         surface.surface.edge_style = if hides { EdgeStyle::Hidden } else { self.edges };
         surface
@@ -368,8 +384,13 @@ impl Figure {
         surface
     }
 
-    /// Masses without a size that no edge joins, as dots; what edges join is drawn as tubes.
-    fn dots_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
+    /// Masses without a size that no edge joins and that are of no faces, as dots; what edges join is drawn as tubes.
+    fn dots_of(
+        &self,
+        body: &BodyMoment,
+        faces: Option<&BodyMoment>,
+        (index, range): (usize, Option<(f64, f64)>),
+    ) -> Vec<Stroke> {
         if !body.is_of_edges() && body.mesh.cell_count() > 0 {
             return Vec::new();
         }
@@ -381,7 +402,8 @@ impl Figure {
         };
         let is_ball = |point: usize| body.radii().is_some_and(|radii| radii[point] > 0.0);
         let mut is_loose: Vec<bool> = (0..body.positions.len()).map(|point| !is_ball(point)).collect();
-        for node in body.mesh.cells().flat_map(|cell| cell.nodes) {
+        let joined = std::iter::once(body).chain(faces).flat_map(|body| body.mesh.cells());
+        for node in joined.flat_map(|cell| cell.nodes) {
             is_loose[*node as usize] = false;
         }
         let loose = (0..body.positions.len() as u32).filter(|point| is_loose[*point as usize]);

@@ -21,6 +21,7 @@ use souple_mesh::{BoundingBox, Mesh};
 use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use crate::Session;
+use crate::frames::Outline;
 
 pub use common::{Common, Gathering};
 pub use figure::{Arrows, Figure, Floor, FrameAxes, Worn};
@@ -178,7 +179,7 @@ impl Moment {
         self.bodies.iter().all(BodyMoment::is_drawable)
     }
 
-    /// The present state of a session, all bodies, then all skins, then all contours.
+    /// The present state of a session, all bodies, then all skins, then all dresses, then all faces and contours.
     pub fn of_session(session: &Session) -> Self {
         let world = &session.world;
         let body = |info: &BodyInfo| {
@@ -217,26 +218,32 @@ impl Moment {
                 frames: Vec::new(),
             }
         };
-        let contour = |(name, mesh): (String, Mesh)| BodyMoment {
+        let outline = |(name, outline): (String, Outline)| BodyMoment {
             name,
-            positions: mesh.points.clone(),
-            mesh: Arc::new(mesh),
-            point_fields: Vec::new(),
-            cell_fields: Vec::new(),
+            positions: outline.mesh.points.clone(),
+            mesh: Arc::new(outline.mesh),
+            point_fields: outline.point_fields,
+            cell_fields: outline.cell_fields,
             frames: Vec::new(),
         };
-        let names = crate::frames::names_of_contours(&session.bodies);
-        let contours = names.zip(crate::frames::meshes_of_contours(&session.bodies, world)).map(contour);
+        let names = crate::frames::names_of_outlines(&session.bodies);
+        let outlines = names.zip(crate::frames::outlines(&session.bodies, world)).map(outline);
         let bodies = session.bodies.iter().map(body);
         let skins = session.skins.iter().map(skin);
         let dresses = session.bodies.iter().filter_map(|body| body.dress.as_ref()).map(dress);
-        Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).chain(contours).collect() }
+        Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).chain(outlines).collect() }
     }
 
     /// Whether a body wears one of the skins.
     pub fn wears_skin(&self, body: &BodyMoment) -> bool {
         let skin = crate::frames::worn_by(&body.name);
         self.bodies.iter().any(|other| other.name == skin)
+    }
+
+    /// The faces of bodies in a network.
+    pub(super) fn faces_of(&self, network: &BodyMoment) -> Option<&BodyMoment> {
+        let faces = crate::frames::faces_of(&network.name);
+        self.bodies.iter().find(|other| other.name == faces)
     }
 
     /// Without the bodies that wear a skin, which hides them.

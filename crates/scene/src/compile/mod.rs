@@ -193,6 +193,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     let networks = network::networks(&draft);
+    let faces = network::faces(&draft);
     let textures: Vec<_> = draft.bodies.iter().map(|body| texture::texture(&draft, body)).collect();
     if !log.is_empty() {
         return None;
@@ -200,12 +201,12 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     let cuts: Vec<Vec<f64>> = draft.bodies.iter().map(|body| levels::cut_at(&draft, body)).collect();
     let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, marks, .. } = draft;
     model.systems = systems;
-    let bodies = bodies.into_iter().zip(contours).zip(cuts).zip(textures);
-    let bodies = bodies.map(|(((body, contours), cut_at), texture)| {
+    let bodies = bodies.into_iter().zip(contours).zip(faces).zip(cuts).zip(textures);
+    let bodies = bodies.map(|((((body, contours), faces), cut_at), texture)| {
         let radii = network::radii(&body, spec);
         let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
         let marks = marks.iter().find(|marks| marks.body == body.spec.name).cloned();
-        BodyInfo { dress, marks, texture, ..BodyInfo::new(body, radii, contours, cut_at) }
+        BodyInfo { dress, marks, texture, faces, ..BodyInfo::new(body, radii, contours, cut_at) }
     });
     Some(Scene {
         title: title(spec, sources),

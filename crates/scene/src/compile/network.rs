@@ -5,8 +5,10 @@ mod columns;
 mod constraints;
 mod controls;
 mod ends;
+mod faces;
 mod fill;
 mod plan;
+mod rigid;
 mod steps;
 mod summary;
 mod table;
@@ -37,11 +39,13 @@ use super::{Draft, memory, start};
 use crate::diagnostic::Code;
 use crate::measure::ContourInfo;
 use crate::reader::Chosen;
+use crate::scene::FacesInfo;
 use crate::spec::Spec;
 use crate::spec::body::Body;
 use crate::spec::control::Driven;
 use crate::spec::network::{
-    ConstraintKind, ConstraintSpec, CrowdSpec, FrictionSpec, FusibleSpec, LinkTable, MassGroup, Network,
+    ConstraintKind, ConstraintSpec, CrowdSpec, FacesForm, FrictionSpec, FusibleSpec, LinkTable, MassGroup,
+    Network,
 };
 use crate::spec::world::SystemSpec;
 
@@ -104,7 +108,8 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     let links = together(network, links);
     let is_between_masses = |ends: &&[u32; 2]| ends.iter().all(|end| (*end as usize) < masses);
     let nodes = links.iter().flat_map(|links| links.ends.iter().filter(is_between_masses).flatten().copied());
-    let nodes = nodes.chain(constraints::rods(network, &points, draft)?.into_iter().flatten()).collect();
+    let rods = constraints::rods(network, &points, draft)?;
+    let nodes = nodes.chain(rods.into_iter().flatten()).collect();
     let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
     mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
     let presented = network.presented.iter().map(|(name, _)| name);
@@ -431,6 +436,12 @@ fn shared(rows: [Range<u32>; 2], others: [Range<u32>; 2]) -> Option<u32> {
     pairs.filter(|both| !both.is_empty()).map(|both| both.start).min()
 }
 
+/// What of each body is drawn as faces of its parts.
+pub fn faces(draft: &Draft) -> Vec<Option<FacesInfo>> {
+    let of_body = |body: &Placed| faces::shown(body.spec.network.as_ref()?, &body.mesh.points);
+    draft.bodies.iter().map(of_body).collect()
+}
+
 /// The contours of each body.
 pub fn contours(draft: &Draft) -> Vec<Vec<ContourInfo>> {
     let of_body = |body: &Placed| {
@@ -493,11 +504,19 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
             Some(ConstraintKind::Balls(diameter)) => Some(0.5 * diameter),
             _ => None,
         };
+        // what others meet of a group by their faces
+        let of_faces = |spec: &ConstraintSpec| {
+            let Some(ConstraintKind::Faces(bodies)) = &spec.kind else { return None };
+            let bodies = bodies
+                .iter()
+                .find(|bodies| bodies.of.is_empty() || bodies.of.iter().any(|name| holds(name, &own)))?;
+            if let FacesForm::Balls(radius) = bodies.form { Some(radius) } else { None }
+        };
         let of_plane = |spec: &ConstraintSpec| {
             matches!(spec.kind, Some(ConstraintKind::Plane(..))).then_some(spec.radius)
         };
         let constraints = || network.constraints.iter().filter(of);
-        let by_balls = constraints().find_map(of_balls);
+        let by_balls = constraints().find_map(|spec| of_balls(spec).or_else(|| of_faces(spec)));
         by_balls.or_else(|| constraints().filter_map(of_plane).max_by(f64::total_cmp)).unwrap_or(0.0)
     };
     // those of one group among themselves tell more than those with another

@@ -59,7 +59,7 @@ pub fn residuals(part: &Part, world: &mut World) -> Vec<f64> {
             let off = if is_pressing { gap.abs() } else { (-gap).max(0.0) };
             // of formulas in metres, as far as they have a slope
             let steepness = if slope == Vec3::ZERO { 1.0 } else { slope.length() };
-            for (row, _) in unilateral.sides(contact, at.pairs).iter() {
+            for (row, _) in unilateral.sides(contact, at.pairs, at.positions).iter() {
                 let known: &mut f64 = &mut worst[row];
                 *known = known.max(off / steepness);
             }

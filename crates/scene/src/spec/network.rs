@@ -3,6 +3,7 @@
 mod actuator;
 mod constraints;
 mod contours;
+mod faces;
 mod fill;
 mod fusible;
 mod kept;
@@ -11,6 +12,7 @@ mod objects;
 pub use actuator::ActuatorSpec;
 pub use constraints::{ConstraintKind, ConstraintSpec, Guided};
 pub use contours::{ContourSpec, Way};
+pub use faces::{FacesForm, FacesSpec};
 pub use fill::{FillSpec, Filled};
 pub use fusible::FusibleSpec;
 pub use kept::FileSpec;
@@ -524,7 +526,7 @@ impl Network {
         let groups = self.masses.iter().map(|group| group.name.as_str());
         let known: Vec<&str> = groups.chain(self.presented.iter().map(|(name, _)| name.as_str())).collect();
         for (constraint, name) in
-            self.constraints.iter().flat_map(|it| it.of.iter().map(move |name| (it, name)))
+            self.constraints.iter().flat_map(|it| it.groups().map(move |name| (it, name)))
         {
             if !known.contains(&name.as_str()) {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());

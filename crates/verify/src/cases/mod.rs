@@ -41,6 +41,7 @@ mod octree;
 mod patch;
 mod plastic_bodies;
 mod point_cells;
+mod polyhedra;
 mod polynomial;
 mod pressure;
 mod resolution;
@@ -84,6 +85,7 @@ pub const TABLES: &[&[Case]] = &[
     frequencies::CASES,
     motion::CASES,
     modal::CASES,
+    polyhedra::CASES,
     polynomial::CASES,
     moving_frame::CASES,
     pressure::CASES,

@@ -69,6 +69,13 @@ impl Shown {
         } else {
             shown.edges = mesh.boundary_edges().into_iter().map(numbered).collect();
         }
+        if let Some(faces) = &body.faces {
+            let of_points = faces.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
+            shown.triangles = of_points.collect();
+            shown.edges = faces.edges(&mesh.points).into_iter().map(numbered).collect();
+            // they need not close
+            shown.is_sheet = true;
+        }
         if mesh.dimension() == 1 {
             // corners stand first, what is between them after
             let along = |nodes: &[u32]| [&nodes[..1], &nodes[2..], &nodes[1..2]].concat();

@@ -10,25 +10,25 @@ use souple_models::network::relations::{
     Acceleration, Angle, Area, Direction, Guide, Joint, Relation, Rod, Surface, Volume,
 };
 use souple_models::network::{
-    Constraints, Keeping, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints,
+    Constraints, Keeping, Polyhedra, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints,
 };
 
 use super::super::bodies::Placed;
 use super::super::{Draft, memory, motion, start};
-use super::ends;
+use super::{ends, faces, rigid};
 use crate::diagnostic::{Code, Log};
 use crate::spec::boundary::MotionSpec;
 use crate::spec::network::{ConstraintKind, ConstraintSpec, Guided, Join, Network};
 
 /// Of what a relation changes by when its masses move by their greatest coordinate: what is off by more at the start does not hold.
-const HOLDS: f64 = 1e-9;
+pub(super) const HOLDS: f64 = 1e-9;
 
 /// A constraint that is being made.
-struct Making<'a> {
-    draft: &'a Draft<'a>,
-    body: &'a Placed<'a>,
-    network: &'a Network,
-    spec: &'a ConstraintSpec,
+pub(super) struct Making<'a> {
+    pub draft: &'a Draft<'a>,
+    pub body: &'a Placed<'a>,
+    pub network: &'a Network,
+    pub spec: &'a ConstraintSpec,
 }
 
 /// What a constraint became.
@@ -37,6 +37,7 @@ pub enum Made {
     Kept(Constraints),
     Sided(SidedConstraints),
     Balls(RigidBalls),
+    Faces(Polyhedra),
 }
 
 impl Made {
@@ -45,13 +46,14 @@ impl Made {
             Self::Kept(constraints) => Box::new(constraints),
             Self::Sided(constraints) => Box::new(constraints),
             Self::Balls(balls) => Box::new(balls),
+            Self::Faces(faces) => Box::new(faces),
         }
     }
 
     fn kept(&self) -> Option<&Constraints> {
         match self {
             Self::Kept(constraints) => Some(constraints),
-            Self::Sided(_) | Self::Balls(_) => None,
+            Self::Sided(_) | Self::Balls(_) | Self::Faces(_) => None,
         }
     }
 }
@@ -67,6 +69,9 @@ pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, in
     let kind = spec.kind.as_ref()?;
     if let ConstraintKind::Balls(diameter) = kind {
         return making.balls(name, *diameter, timestep).map(Made::Balls);
+    }
+    if let ConstraintKind::Faces(tables) = kind {
+        return making.faces(name, tables, timestep).map(Made::Faces);
     }
     let relations = making.relations(kind)?;
     if let Some(sense) = spec.sense {
@@ -108,27 +113,52 @@ pub fn check_size(network: &Network, body: &Placed, constraints: &[Made], log: &
     }
 }
 
-/// The ends of all rods and strings, in the order of constraints; `None` where some were refused.
+/// The ends of all rods and strings that are drawn, in the order of constraints: no rods within bodies that are drawn by their faces. `None` where some
+/// were refused.
 pub fn rods(network: &Network, points: &[Vec3], draft: &Draft) -> Option<Vec<[u32; 2]>> {
-    let mut rods = Vec::new();
+    let mut drawn = Vec::new();
     for spec in network.constraints.iter().filter(|spec| spec.sense != Some(Sense::AtLeast)) {
-        if let Some(ConstraintKind::Rod(join, _)) = &spec.kind {
-            let of = (join, &spec.of[..], &spec.kind_site, "constraint");
-            rods.extend(ends::joined(of, network, points, memory::links_that_fit(), draft.log)?);
-        }
+        let mut rods = match &spec.kind {
+            Some(ConstraintKind::Rod(join, _)) => {
+                let of = (join, &spec.of[..], &spec.kind_site, "constraint");
+                ends::joined(of, network, points, memory::links_that_fit(), draft.log)?
+            }
+            Some(ConstraintKind::Rigid) => {
+                rigid_groups(spec, network, points).flat_map(|(_, rods)| rods.unwrap_or_default()).collect()
+            }
+            _ => continue,
+        };
+        rods.retain(|ends| spec.is_sided() || !faces::hide(network, *ends));
+        drawn.extend(rods);
     }
     let masses = points.len() as u32;
-    rods.retain(|ends| ends.iter().all(|end| *end < masses));
-    Some(rods)
+    drawn.retain(|ends| ends.iter().all(|end| *end < masses));
+    Some(drawn)
+}
+
+/// Each group that is a rigid body, by its name, with its rods; `None` where rods do not hold it.
+fn rigid_groups<'a>(
+    spec: &'a ConstraintSpec,
+    network: &Network,
+    points: &[Vec3],
+) -> impl Iterator<Item = (&'a str, Option<Vec<[u32; 2]>>)> {
+    let all = spec.of.is_empty().then(|| ("all masses", 0..network.mass_count() as u32));
+    let named = spec.of.iter().filter_map(|name| Some((name.as_str(), network.numbers_of(name)?)));
+    all.into_iter().chain(named).map(|(name, masses)| {
+        let rods = rigid::rods(&points[masses.start as usize..masses.end as usize]);
+        let of_network =
+            |rods: Vec<[u32; 2]>| rods.into_iter().map(|ends| ends.map(|end| masses.start + end)).collect();
+        (name, rods.map(of_network))
+    })
 }
 
 impl Making<'_> {
-    fn refuse<T>(&self, code: Code, message: String, expected: &str) -> Option<T> {
+    pub(super) fn refuse<T>(&self, code: Code, message: String, expected: &str) -> Option<T> {
         self.draft.log.add(code, &self.spec.kind_site, message, expected);
         None
     }
 
-    fn row(&self, mass: u32) -> u32 {
+    pub(super) fn row(&self, mass: u32) -> u32 {
         self.body.rows.start as u32 + mass
     }
 
@@ -177,8 +207,39 @@ impl Making<'_> {
             }
             ConstraintKind::Area(normal, part) => self.area(*normal, part),
             ConstraintKind::Volume(triangles, part) => self.volume(triangles, part),
-            ConstraintKind::Balls(_) => None,
+            ConstraintKind::Rigid => self.rigid(),
+            ConstraintKind::Balls(_) | ConstraintKind::Faces(_) => None,
         }
+    }
+
+    /// Rods that make rigid bodies of groups.
+    fn rigid(&self) -> Option<Vec<Box<dyn Relation>>> {
+        let mut relations: Vec<Box<dyn Relation>> = Vec::new();
+        for (name, rods) in rigid_groups(self.spec, self.network, &self.body.mesh.points) {
+            let Some(rods) = rods else {
+                let message = format!(
+                    "the masses of `{name}` rest in one plane or line, and rods do not hold what leaves it"
+                );
+                return self.refuse(
+                    Code::Conflict,
+                    message,
+                    "masses that are not in one plane, or no more than three",
+                );
+            };
+            for [a, b] in rods {
+                let length = (self.place(a) - self.place(b)).length();
+                if length == 0.0 {
+                    let message = format!("masses {a} and {b} of `{name}` rest at one place");
+                    return self.refuse(Code::Conflict, message, "masses that are apart");
+                }
+                relations.push(Box::new(Rod { ends: [self.row(a), self.row(b)], length }));
+            }
+        }
+        if relations.is_empty() {
+            let message = "one mass alone is held by nothing".to_owned();
+            return self.refuse(Code::EmptyRegion, message, "groups of at least two masses");
+        }
+        Some(relations)
     }
 
     /// Balls that keep out of each other, but for those that rods and joints hold.
@@ -205,6 +266,10 @@ impl Making<'_> {
             if let Some(ConstraintKind::Rod(join, _) | ConstraintKind::Joint(join)) = &spec.kind {
                 let of = (join, &spec.of[..], &spec.kind_site, "constraint");
                 held.extend(ends::joined(of, self.network, points, most, self.draft.log)?);
+            }
+            if let Some(ConstraintKind::Rigid) = spec.kind {
+                let groups = rigid_groups(spec, self.network, points);
+                held.extend(groups.flat_map(|(_, rods)| rods.unwrap_or_default()));
             }
         }
         held.iter_mut().for_each(|ends| ends.sort_unstable());
@@ -429,7 +494,7 @@ impl Making<'_> {
     }
 
     /// Masses among the rows of their system.
-    fn rows_at(&self, masses: &[Vec3]) -> Vec<Vec3> {
+    pub(super) fn rows_at(&self, masses: &[Vec3]) -> Vec<Vec3> {
         std::iter::repeat_n(Vec3::ZERO, self.body.rows.start).chain(masses.iter().copied()).collect()
     }
 

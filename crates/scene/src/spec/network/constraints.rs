@@ -7,6 +7,7 @@ use souple_models::network::{Augmented, Sense};
 use souple_table::{Range, Value};
 
 use super::Join;
+use super::faces::{FACES, FacesSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
@@ -183,7 +184,9 @@ const KINDS: &[&str] = &[
     "acceleration",
     "area",
     "volume",
+    "rigid",
     "balls",
+    "faces",
 ];
 
 /// Of a constraint with a sense.
@@ -199,7 +202,7 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
         Key::new(
             "of",
             Shape::Texts,
-            "the groups whose masses it is of, one or two of `rod`, `joint`, `direction` and `balls`; all masses where left out",
+            "the groups whose masses it is of, one or two of `rod`, `joint`, `direction` and `balls`, none of `faces`; all masses where left out",
         ),
         Key::new("rod", Shape::Table(&ROD), "pairs at one distance"),
         Key::new("joint", Shape::Table(&JOINT), "pairs at one place"),
@@ -212,7 +215,13 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
         Key::new("acceleration", Shape::Table(&ACCELERATION), "each accelerated as told"),
         Key::new("area", Shape::Table(&AREA), "an area that they enclose"),
         Key::new("volume", Shape::Table(&VOLUME), "a volume that they enclose"),
+        Key::new(
+            "rigid",
+            Shape::Boolean,
+            "each group is a rigid body: as many rods as hold its masses, which is three of each but six in all",
+        ),
         Key::new("balls", Shape::Table(&BALLS), "none nearer to another than a diameter"),
+        Key::new("faces", Shape::Tables(&FACES), "bodies with faces, none of which enters another"),
         Key::new(
             "sense",
             Shape::Choice(SENSES),
@@ -222,7 +231,7 @@ pub(super) static CONSTRAINT: Keys = Keys::new(
             "restitution",
             "",
             Range::closed(0.0, 1.0),
-            "of what has a sense, and of balls: part of the velocity of approach that masses part with",
+            "of what has a sense, of balls and of faces: part of the velocity of approach that masses part with",
         )
         .or(Value::Number(0.0)),
         Key::number("friction", "", Range::NOT_NEGATIVE, "of the same, Coulomb's coefficient")
@@ -293,8 +302,11 @@ pub enum ConstraintKind {
     Area(Vec3, Formula),
     /// Of triangles, and the part likewise.
     Volume(Vec<[u32; 3]>, Formula),
+    /// Each group by rods.
+    Rigid,
     /// Of a diameter [m].
     Balls(f64),
+    Faces(Vec<FacesSpec>),
 }
 
 /// What guides masses.
@@ -316,6 +328,17 @@ impl ConstraintSpec {
         let of = reader.texts("of");
         let written = reader.written(KINDS);
         let kind = match written[..] {
+            ["faces"] => ConstraintKind::faces(&of, reader),
+            ["rigid"] if reader.boolean("rigid") => Some(ConstraintKind::Rigid),
+            ["rigid"] => {
+                reader.log().add(
+                    Code::Conflict,
+                    &reader.site_of("rigid"),
+                    "it is said that nothing is constrained",
+                    "`rigid = true`",
+                );
+                None
+            }
             [kind] => reader.table(kind).and_then(|table| ConstraintKind::read(kind, &of, &table)),
             _ => {
                 let message = match written.len() {
@@ -373,7 +396,16 @@ impl ConstraintSpec {
 
     /// Whether it holds from one side alone, by forces that push and do not pull.
     pub fn is_sided(&self) -> bool {
-        self.sense.is_some() || matches!(self.kind, Some(ConstraintKind::Balls(_)))
+        self.sense.is_some() || self.kind.as_ref().is_some_and(ConstraintKind::keeps_apart)
+    }
+
+    /// The groups that it names.
+    pub fn groups(&self) -> impl Iterator<Item = &String> {
+        let faces = match &self.kind {
+            Some(ConstraintKind::Faces(bodies)) => &bodies[..],
+            _ => &[],
+        };
+        self.of.iter().chain(faces.iter().flat_map(|bodies| &bodies.of))
     }
 }
 
@@ -397,10 +429,10 @@ fn check_sense(
             "`sense` of a rod, a plane or a surface of one formula",
         );
     }
-    let is_balls = matches!(kind, ConstraintKind::Balls(_));
-    if sense.is_none() && !is_balls {
+    let keeps_apart = kind.keeps_apart();
+    if sense.is_none() && !keeps_apart {
         for key in reader.written(&OF_SIDED) {
-            refuse(key, "this constraint holds from both sides", "a `sense`, or `balls`");
+            refuse(key, "this constraint holds from both sides", "a `sense`, `balls` or `faces`");
         }
     } else {
         for key in reader.written(&["time", "augmented"]) {
@@ -412,11 +444,11 @@ fn check_sense(
         }
     }
     let is_rod = matches!(kind, ConstraintKind::Rod(..));
-    if (is_rod || is_balls) && reader.has("radius") {
+    if (is_rod || keeps_apart) && reader.has("radius") {
         refuse(
             "radius",
             "masses are kept from each other",
-            "`length` of the rod, or `diameter` of the balls",
+            "`length` of the rod, `diameter` of the balls, or `radius` within `faces`",
         );
     }
     if is_rod && sense == Some(Sense::AtMost) && reader.number("friction") > 0.0 {
@@ -452,6 +484,32 @@ fn limit(kind: Option<&ConstraintKind>, reader: &Reader, refuse: &impl Fn(&str, 
 }
 
 impl ConstraintKind {
+    /// Whether it is of what keeps out of each other, wherever it comes near.
+    fn keeps_apart(&self) -> bool {
+        matches!(self, Self::Balls(_) | Self::Faces(_))
+    }
+
+    fn faces(of: &[String], reader: &Reader) -> Option<Self> {
+        if !of.is_empty() {
+            let message = "each of the bodies says which groups it is of";
+            reader.log().add(Code::Conflict, &reader.site_of("of"), message, "`of` within `faces`");
+            return None;
+        }
+        let tables = reader.tables("faces");
+        if tables.is_empty() {
+            let message = "there are no faces";
+            reader.log().add(
+                Code::EmptyRegion,
+                &reader.site_of("faces"),
+                message,
+                "a table for each form of bodies",
+            );
+        }
+        let bodies: Vec<FacesSpec> = tables.iter().filter_map(FacesSpec::read).collect();
+        // what is missing has been told
+        (bodies.len() == tables.len() && !bodies.is_empty()).then_some(Self::Faces(bodies))
+    }
+
     fn read(kind: &str, of: &[String], reader: &Reader) -> Option<Self> {
         Some(match kind {
             "rod" | "joint" | "direction" | "balls" if of.len() > 2 => {
@@ -488,7 +546,7 @@ impl ConstraintKind {
             }
             "balls" => Self::Balls(reader.maybe_number("diameter")?),
             "area" => Self::Area(axis(reader, "normal")?, part(reader)?),
-            _ => Self::Volume(triangles(reader)?, part(reader)?),
+            _ => Self::Volume(triangles(reader, &[1])?, part(reader)?),
         })
     }
 }
@@ -550,8 +608,8 @@ fn corners(reader: &Reader) -> Option<Vec<[u32; 3]>> {
     Some(corners)
 }
 
-/// Numbers of a closed surface, whose sides are each met by one in the opposite direction.
-fn triangles(reader: &Reader) -> Option<Vec<[u32; 3]>> {
+/// Numbers of a surface, whose sides are each met in the opposite direction by as many others as are allowed.
+pub(super) fn triangles(reader: &Reader, others: &[usize]) -> Option<Vec<[u32; 3]>> {
     let refuse = |message: String, expected: &str| {
         reader.log().add(Code::OutOfRange, &reader.site_of("triangles"), message, expected);
         None
@@ -562,7 +620,12 @@ fn triangles(reader: &Reader) -> Option<Vec<[u32; 3]>> {
     triangles.iter().flat_map(|corners| sides(*corners)).for_each(|side| *met.entry(side).or_insert(0) += 1);
     for side in triangles.iter().flat_map(|corners| sides(*corners)) {
         let [a, b] = side;
-        if met[&side] != 1 || met.get(&[b, a]) != Some(&1) {
+        let opposite = met.get(&[b, a]).copied().unwrap_or(0);
+        if met[&side] != 1 {
+            let message = format!("the side from mass {a} to mass {b} is of {} triangles", met[&side]);
+            return refuse(message, "triangles that are all counterclockwise seen from outside");
+        }
+        if !others.contains(&opposite) {
             let message = format!("the side from mass {a} to mass {b} is not met by one other triangle");
             return refuse(
                 message,
@@ -571,7 +634,7 @@ fn triangles(reader: &Reader) -> Option<Vec<[u32; 3]>> {
         }
     }
     if triangles.is_empty() && reader.has("triangles") {
-        return refuse("there are no triangles".to_owned(), "at least four, which close a surface");
+        return refuse("there are no triangles".to_owned(), "three numbers of masses for each");
     }
     Some(triangles)
 }

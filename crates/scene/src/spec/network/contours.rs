@@ -46,8 +46,9 @@ pub(super) static CONTOUR: Keys = Keys::new(
 /// Steps in what a ball reaches, at most.
 const STEPS_MAX: f64 = 1000.0;
 
-/// The name that no contour has.
+/// Names that no contour has.
 const WORN: &str = "skin";
+const FACES: &str = "faces";
 
 /// Where an object ends.
 #[derive(Clone, Debug)]
@@ -77,10 +78,10 @@ impl ContourSpec {
         let refuse = |key: &str, message: &str, expected: &str| {
             reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
         };
-        // frames and pictures tell a contour `NETWORK.NAME`, and what dresses the network `NETWORK.skin`
-        if name == WORN {
-            let message =
-                "a contour `skin` has the name that frames and pictures give to what dresses a network";
+        // frames and pictures tell a contour `NETWORK.NAME`
+        let taken = [(WORN, "what dresses a network"), (FACES, "the faces of its bodies")];
+        if let Some((_, what)) = taken.into_iter().find(|(taken, _)| *taken == name) {
+            let message = format!("a contour `{name}` has the name that frames and pictures give to {what}");
             reader.log().add(Code::Conflict, &reader.site(), message, "another name, say `outline`");
             return None;
         }

@@ -1,0 +1,213 @@
+//! Bodies with faces in scenes: momenta, bits, what is refused.
+
+use souple_engine::World;
+use souple_math::Vec3;
+
+use crate::constraints::{read, started};
+
+/// Two dice and a ball that fly into each other where nothing else pulls.
+const FLYING: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 5
+[modules.die.masses.corners]
+lattice = { origin = [-0.1, -0.1, -0.1], spacing = 0.2, counts = [2, 2, 2] }
+mass = 0.1
+[networks.space.modules.one]
+module = "die"
+rotate = { axis = [1, 0.3, 0.2], angle = "40 deg" }
+velocity = [1, 0.1, 0]
+[networks.space.modules.two]
+module = "die"
+rotate = { axis = [0, 0.3, 1], angle = "70 deg" }
+translate = [0.5, 0.09, 0.05]
+[networks.space.masses.ball]
+positions = [[0.25, 0.5, 0.02]]
+velocity = [0, -0.8, 0]
+mass = 0.3
+[[networks.space.constraints]]
+of = ["one", "two"]
+rigid = true
+[[networks.space.constraints]]
+name = "faces"
+faces = [{ of = ["one", "two"], hull = true }, { of = ["ball"], radius = 0.06 }]
+friction = 0.3
+restitution = 0.4
+"#;
+
+/// `Σ m v` and `Σ m x × v`, with the velocities of the steps that led here, and how fast anything is off the others.
+fn momenta(world: &World) -> [Vec3; 2] {
+    let rows = world.rows(0);
+    let masses = std::iter::once(0.3).chain(std::iter::repeat(0.1));
+    let each = || masses.clone().zip(rows.positions.iter().zip(&rows.velocities));
+    let linear = each().map(|(mass, (_, velocity))| *velocity * mass).sum();
+    let angular = each().map(|(mass, (place, velocity))| place.cross(*velocity) * mass).sum();
+    [linear, angular]
+}
+
+/// Whatever edges, corners, faces and a ball do to each other, with friction: no momentum is made. Forces go to masses by where they are touched at the start of
+/// a step, so that what turns is kept too, but for friction at the centre of the ball, which lies by its radius beside: without friction to rounding.
+#[test]
+fn momenta_are_kept() {
+    for friction in ["0", "0.3"] {
+        let setting = format!("networks.space.constraints[1].friction={friction}");
+        let mut world = started(FLYING, &[&setting]);
+        let [linear, angular] = momenta(&world);
+        let mut collided = false;
+        for step in 0..120 {
+            let before = world.rows(0).velocities[1];
+            world.step().unwrap_or_else(|error| panic!("{step}: {error}"));
+            collided |= (world.rows(0).velocities[1] - before).length() > 0.1;
+            let [now, turning] = momenta(&world);
+            assert!((now - linear).length() < 1e-11, "{step}: {now:?} {linear:?}");
+            if friction == "0" {
+                // gaps and places of a step that differ by its way, each to what it is solved to
+                assert!((turning - angular).length() < 1e-7, "{step}: {turning:?} {angular:?}");
+            }
+        }
+        assert!(collided);
+    }
+}
+
+/// Nothing enters anything in any step, and what is lost of the energy is counted.
+#[test]
+fn nothing_is_entered() {
+    let mut world = started(FLYING, &[]);
+    let mut least = 0.0_f64;
+    for _ in 0..120 {
+        world.step().unwrap();
+        world.visit_forces(0, &mut |force, at| {
+            let Some(unilateral) = force.unilateral() else { return };
+            for contact in 0..unilateral.contact_count(at.pairs) {
+                if unilateral.force(contact, at.memory, at.pairs) != Vec3::ZERO {
+                    least = least.min(unilateral.gap(contact, at.pairs, at.positions, at.time));
+                }
+            }
+        });
+    }
+    // 1e-7 of the way of a step, 2 mm
+    assert!(least > -1e-9, "{least}");
+}
+
+/// A run that goes on from its state makes the same bits, and so do any number of threads; detection beside the steps has them search anew.
+#[test]
+fn bodies_go_on_from_state() {
+    let mut world = started(FLYING, &[]);
+    (0..20).for_each(|_| {
+        world.step().unwrap();
+    });
+    let mut resumed = read(FLYING, &[]).unwrap().model.start(world.state().clone());
+    (0..20).for_each(|_| {
+        world.step().unwrap();
+        resumed.step().unwrap();
+    });
+    assert!(world.state() == resumed.state());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let threaded = pool.install(|| {
+        let mut world = started(FLYING, &[]);
+        (0..40).for_each(|_| {
+            world.step().unwrap();
+        });
+        world.state().clone()
+    });
+    assert!(*world.state() == threaded);
+    let mut late = started(FLYING, &["world.collisions=one_period_late"]);
+    (0..40).for_each(|_| {
+        late.step().unwrap();
+    });
+    assert!(world.state().systems[0].q == late.state().systems[0].q);
+}
+
+#[test]
+fn wrong_bodies_are_refused() {
+    let faces = |tables: &str| format!("networks.space.constraints=[{{ faces = [{tables}] }}]");
+    let other = |constraint: &str| format!("networks.space.constraints=[{{ {constraint} }}]");
+    for (setting, words) in [
+        (faces("{ of = [\"one\"], hull = true }"), "1 bodies, 1 of them with faces: nothing meets"),
+        (faces("{ of = [\"one\", \"ball\"], radius = 0.01 }"), "2 bodies, 0 of them with faces"),
+        (faces("{ of = [\"one\", \"ball\"], hull = true }"), "the masses of `ball` rest in one plane"),
+        (faces("{ of = [\"one\", \"three\"], hull = true }"), "there is no group of masses `three`"),
+        (faces("{ of = [\"one\", \"two\"] }"), "a body has triangles, a hull, or balls"),
+        (faces("{ of = [\"one\", \"two\"], hull = false }"), "a body has triangles, a hull, or balls"),
+        (
+            faces("{ of = [\"one\", \"two\"], hull = true, radius = 1 }"),
+            "a body has triangles, a hull, or balls",
+        ),
+        (faces("{ of = [\"one\", \"two\"], radius = 0 }"), "radius"),
+        (
+            faces("{ of = [\"one\", \"two\"], triangles = [[0, 1, 9]] }"),
+            "`triangles` are of mass 9, and `one` has 8",
+        ),
+        (faces("{ of = [\"one\", \"two\"], triangles = [[0, 1, 1]] }"), "triangles[0] is [0, 1, 1]"),
+        (faces("{ of = [\"one\", \"two\"], triangles = [] }"), "there are no triangles"),
+        (
+            faces("{ of = [\"one\", \"two\"], triangles = [[0, 1, 2], [0, 1, 3]] }"),
+            "the side from mass 0 to mass 1 is of 2 triangles",
+        ),
+        (
+            faces("{ of = [\"one\"], hull = true }, { of = [\"ball\"], radius = 0.5 }"),
+            "`ball` begins within `one`, by its mass 0",
+        ),
+        (
+            other("faces = [{ of = [\"one\", \"two\"], hull = true }], of = [\"one\"]"),
+            "each of the bodies says",
+        ),
+        (
+            other("faces = [{ of = [\"one\", \"two\"], hull = true }], sense = \"at_least\""),
+            "has no two sides",
+        ),
+        (
+            other("faces = [{ of = [\"one\", \"two\"], hull = true }], time = 1"),
+            "what holds from one side holds at once",
+        ),
+        (other("faces = []"), "there are no faces"),
+        (other("rigid = false"), "it is said that nothing is constrained"),
+        (other("rigid = true, of = [\"ball\"]"), "one mass alone is held by nothing"),
+        (other("rigid = true, yields_at = 1"), "this constraint does not give way"),
+    ] {
+        match read(FLYING, &[&setting]) {
+            Ok(_) => panic!("{setting} is taken"),
+            Err(message) => assert!(message.contains(words), "{setting}: {message}"),
+        }
+    }
+}
+
+/// A hollow of triangles that do not close is met from its outer side alone.
+#[test]
+fn a_sheet_is_met_from_outside() {
+    const FALLING: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, 0, -10]
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 5
+[networks.room.masses.plate]
+positions = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+mass = 1
+fixed = true
+[networks.room.masses.ball]
+positions = [[0.3, 0.1, 0.5]]
+mass = 1
+[[networks.room.constraints]]
+faces = [{ of = ["plate"], triangles = [[0, 1, 2], [0, 2, 3]] }, { of = ["ball"], radius = 0.1 }]
+restitution = 0.5
+"#;
+    let height = |settings: &[&str], periods: u32| {
+        let mut world = started(FALLING, settings);
+        for _ in 0..periods {
+            world.step().unwrap();
+        }
+        world.rows(0).positions[4].z
+    };
+    // it falls by 0.4 m, and comes to a quarter of that again
+    let top = (25..45).map(|periods| height(&[], periods)).fold(0.0, f64::max);
+    // the way of a step at the impact, and the half of one that velocities are late by
+    assert!((top - 0.2).abs() < 2.0 * 2e-3 * 2.9, "{top}");
+    let through = "networks.room.constraints[0].faces[0].triangles=[[0, 2, 1], [0, 3, 2]]";
+    assert!(height(&[through], 60) < -1.0);
+}
