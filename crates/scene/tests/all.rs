@@ -12,6 +12,7 @@ mod hanging;
 mod heat;
 mod incompressible;
 mod inelastic;
+mod landing;
 mod liver;
 mod marks;
 mod material_fields;

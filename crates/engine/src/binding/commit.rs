@@ -4,11 +4,11 @@ use souple_math::{Mat3, Vec3};
 
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError};
+use crate::unilateral::Bounded;
 
 use super::limits::{Flowing, Yielding};
 use super::memory::{known, memory_len, multiplier, set_earlier, set_multiplier};
 use super::structure::Structure;
-use super::switching::Wrong;
 use super::{ConstraintSolver, fault, rate, value_near};
 
 impl ConstraintSolver {
@@ -131,7 +131,7 @@ impl ConstraintSolver {
             + size_of::<Mat3>() * matrices
             + size_of::<Flowing>() * self.flowing.capacity()
             + size_of::<Yielding>() * (self.yielding.capacity() + self.led_yielding.capacity())
-            + size_of::<Wrong>() * self.wrong.capacity()
+            + size_of::<Bounded>() * self.bounded.capacity()
             + self.contacts.bytes()
             + self.structure.as_ref().map_or(0, |structure| {
                 size_of_val(structure.products.as_slice())

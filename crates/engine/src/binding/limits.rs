@@ -6,7 +6,7 @@
 //! pushes against are held there, the others solved for, and the way there is bent along the bounds and halved until it leads down. Where none of it does,
 //! it is gone to the first limit that is met, which stays until the others are solved. Each leads down, so that none comes twice.
 //!
-//! Contacts are no part of that: what they push with is found for those that give way at the time, see [`super::switching`].
+//! Contacts are no part of that: which give way under them is found with what they push, see [`super::pushing`].
 
 use souple_math::{Mat3, Vec3};
 
@@ -18,9 +18,11 @@ use super::structure::Structure;
 use super::{ConstraintSolver, RAISE, Solved, fault};
 
 /// Of a limit, what a multiplier may be beyond it: rounding of a solve whose matrix has the condition `1/RAISE`.
-pub(super) const BEYOND: f64 = 1e-8;
+const BEYOND: f64 = 1e-8;
+/// Of a limit, what is at it up to rounding.
+pub(super) const AT_LIMIT: f64 = 1.0 - 1e-14;
 /// Sets that are tried in a step and, besides, for each relation that yields.
-pub(super) const MOST_SWITCHES: [usize; 2] = [100, 10];
+const MOST_SWITCHES: [usize; 2] = [100, 10];
 /// Halvings of a way that is bent along the bounds.
 const HALVINGS: u32 = 8;
 /// Of what the slope promises, what a way must lead down by (Armijo).
@@ -65,7 +67,7 @@ pub(super) struct Yielding {
 
 /// What rows respond to.
 #[derive(Clone, Copy)]
-pub(super) enum Responding {
+enum Responding {
     Change,
     /// A part of the way that it is to change by.
     Stride,
@@ -158,6 +160,7 @@ impl ConstraintSolver {
             let to = if sign == 0.0 { multiplier.clamp(-limit, *limit) } else { sign * limit };
             self.change[index].x = to - multiplier;
         }
+        let mut goes_by_limits = false;
         for searches in 0..MOST_SWITCHES[0] + MOST_SWITCHES[1] * self.yielding.len() {
             if searches > 0 {
                 self.factorize(step, structure)?;
@@ -175,10 +178,13 @@ impl ConstraintSolver {
                     self.apply_change(step, structure);
                     return Ok(if searches > 0 { Solved::WithOthers } else { Solved::AsBefore });
                 }
-            } else if self.descend(structure) {
+                goes_by_limits = false;
+            } else if !goes_by_limits && self.descend(structure) {
                 self.fall(step, structure);
                 self.stay_at_limits();
             } else {
+                // what has met its limit stays there until the others are solved, or they would take turns
+                goes_by_limits = true;
                 self.go_to_first_limit();
             }
         }
@@ -261,7 +267,7 @@ impl ConstraintSolver {
             let Yielding { relation, limit } = self.yielding[place];
             let index = relation as usize;
             let (multiplier, left) = (self.multipliers[index].x + self.change[index].x, self.left[index].x);
-            let near = limit * (1.0 - 1e-14);
+            let near = limit * AT_LIMIT;
             let flowing = match multiplier {
                 at if at >= near && left > 0.0 => Flowing::Pushing,
                 at if at <= -near && left < 0.0 => Flowing::Pulling,
@@ -311,12 +317,12 @@ impl ConstraintSolver {
     }
 
     /// How far a relation may be off, likewise.
-    pub(super) fn scaled_near(&self, step: &Step, index: usize) -> f64 {
+    fn scaled_near(&self, step: &Step, index: usize) -> f64 {
         self.near[index].x * self.scales[index].x / (step.timestep * step.timestep)
     }
 
     // W Jᵀ δ
-    pub(super) fn respond(&mut self, structure: &Structure, to: Responding) {
+    fn respond(&mut self, structure: &Structure, to: Responding) {
         self.response.clear();
         self.response.resize(self.inverse_masses.len(), Vec3::ZERO);
         let multipliers = match to {
@@ -327,13 +333,13 @@ impl ConstraintSolver {
     }
 
     // J (W Jᵀ δ)
-    pub(super) fn response_of(&self, structure: &Structure, index: usize) -> Vec3 {
+    fn response_of(&self, structure: &Structure, index: usize) -> Vec3 {
         let entries = structure.starts[index]..structure.starts[index + 1];
         entries.map(|entry| self.gradients[entry] * self.response[structure.rows[entry] as usize]).sum()
     }
 }
 
-pub(super) fn unsettled(step: &Step, structure: &Structure, index: usize) -> StepError {
+fn unsettled(step: &Step, structure: &Structure, index: usize) -> StepError {
     let (force, relation) = structure.relations[index];
     StepError::LimitsUnsettled {
         force: step.system.forces[force].name().to_owned(),

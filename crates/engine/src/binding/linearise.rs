@@ -160,7 +160,9 @@ impl ConstraintSolver {
     }
 
     /// Lets relations be off by a share of what they are before any force too: the way to where they hold may be longer than places are far.
-    pub(super) fn allow_rounding(&mut self, step: &Step, structure: &Structure) {
+    /// What is near the origin is not known better than what others bring it on.
+    pub(super) fn allow_rounding(&mut self, step: &Step, structure: &Structure, positions: &[Vec3]) {
+        self.allow_way(structure, longest_way(&self.places, positions));
         for (index, (force, relation)) in structure.relations.iter().enumerate() {
             let Some(set) = step.system.constraint_set(*force) else { continue };
             let wanted = self.wanted[index];
@@ -168,6 +170,19 @@ impl ConstraintSolver {
             let magnitude = set.magnitude(*relation, &self.places, step.end());
             self.near[index] += Vec3::from_array(off.to_array().map(|off| TOLERANCE * off.abs()));
             self.near[index] += magnitude * ROUNDING;
+        }
+    }
+
+    /// Lets relations be off by rounding of a way on which masses come and go in the step.
+    pub(super) fn allow_way(&mut self, structure: &Structure, way: f64) {
+        for index in 0..structure.relation_count() {
+            let mut slopes = Vec3::ZERO;
+            for (_, gradient) in structure.gradients_of(index, &self.gradients) {
+                slopes += Vec3::from_array([0, 1, 2].map(|component| gradient.row(component).length()));
+            }
+            let (near, scale) = (self.near[index], self.scales[index]);
+            let allowed = |axis: usize| near[axis].max(TOLERANCE * way * slopes[axis] / scale[axis]);
+            self.near[index] = Vec3::from_array([0, 1, 2].map(allowed));
         }
     }
 
@@ -205,4 +220,10 @@ impl ConstraintSolver {
             error => unsolved(error),
         })
     }
+}
+
+/// The greatest coordinate of ways between places.
+pub(super) fn longest_way(to: &[Vec3], from: &[Vec3]) -> f64 {
+    let ways = to.iter().zip(from).flat_map(|(to, from)| (*to - *from).to_array());
+    ways.fold(0.0, |most, way| most.max(way.abs()))
 }

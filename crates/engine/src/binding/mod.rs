@@ -15,15 +15,18 @@
 //!
 //! A relation of one component may yield: `|λ| ≤ Y`, and where that is reached it gives way and what it is to be goes along, `w' = g(x', t')`, a
 //! perfectly plastic flow `p` from what it was told. Which do is a quadratic problem between bounds, solved to first order in each iteration
-//! of Newton's method (`limits.rs`). What yields takes `Y |Δp|`, and works on masses what it is told to change by times its multiplier.
+//! of Newton's method (`limits.rs`), and together with the forces of contacts where these push (`pushing.rs`).
+//! What yields takes `Y |Δp|`, and works on masses what it is told to change by times its multiplier.
 
 mod commit;
+#[cfg(test)]
+mod landing;
 mod limits;
 mod linearise;
 mod memory;
+mod pushing;
 mod solve;
 mod structure;
-mod switching;
 
 use souple_math::{Mat3, Vec3};
 use souple_solve::SolveError;
@@ -31,20 +34,19 @@ use souple_solve::SolveError;
 use crate::force::Configuration;
 use crate::steppers::{Step, StepError};
 use crate::system::System;
-use crate::unilateral::ContactSystem;
+use crate::unilateral::{Bounded, ContactSystem};
 
 pub use memory::{memory_len, multiplier, set_multiplier, yielding_memory_len};
 pub(crate) use solve::{Solved, Sought, bind};
 pub(crate) use structure::Structure;
 
 use limits::{Flowing, Yielding};
-use switching::Wrong;
 
 /// Of a diagonal entry, what is added to it: far above rounding, so that relations which repeat others have a pivot, and far
 /// below the least eigenvalue of the scaled matrix of thousands of rods in a row, `(π/n)²/2`, so that solves converge.
 const RAISE: f64 = 1e-8;
-/// How far off a relation may be, of what it changes by when its points move by the greatest coordinate of any of them, and of what it
-/// was off by before any force: places are known to `2e-16` of that, and sums over thousands of them to this.
+/// How far off a relation may be, of what it changes by when its points move by the greatest coordinate of any of them or by the longest way in the
+/// step, and of what it was off by before any force: places are known to `2e-16` of that, and sums over thousands of them to this.
 const TOLERANCE: f64 = 1e-12;
 /// Likewise, of the numbers of which it is the difference, each known to `1e-16` of itself.
 const ROUNDING: f64 = 2e-15;
@@ -188,7 +190,6 @@ pub(crate) struct ConstraintSolver {
     /// Those that may give way; likewise those between masses that are all led.
     yielding: Vec<Yielding>,
     led_yielding: Vec<Yielding>,
-    wrong: Vec<Wrong>,
     /// What those that are held are to change by, and what all changes do to rows.
     held: Vec<Vec3>,
     stride: Vec<Vec3>,
@@ -198,6 +199,8 @@ pub(crate) struct ConstraintSolver {
     /// Of the relation at hand.
     unscaled: Vec<Mat3>,
     contacts: ContactSystem,
+    /// Those that are sought with contacts.
+    bounded: Vec<Bounded>,
 }
 
 impl System {

@@ -5,11 +5,9 @@ use souple_math::{Mat3, Vec3};
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::SystemWorkspace;
-use crate::unilateral::{ContactSystem, Moving};
 
 use super::limits::Flowing;
 use super::structure::Structure;
-use super::switching::Pivoting;
 use super::{ConstraintSolver, MOST_SOLVES, fault, unsolved, value_near};
 
 /// How relations were solved for.
@@ -83,7 +81,7 @@ impl ConstraintSolver {
             self.factorize(step, structure)?;
         }
         if sought == Sought::Accelerations || !step.system.has_contacts() {
-            self.allow_rounding(step, structure);
+            self.allow_rounding(step, structure, &ws.rows.positions);
             self.flow_as_led(step, structure)?;
             self.solve(step, structure)?;
             self.check_flows(step, structure, &ws.rows.positions)?;
@@ -106,7 +104,7 @@ impl ConstraintSolver {
         let before = self.moving(step, structure, &ws.rows.positions, Solved::AsBefore);
         contacts.begin(&before, next, &mut places)?;
         self.places = places;
-        self.allow_rounding(step, structure);
+        self.allow_rounding(step, structure, &ws.rows.positions);
         self.flow_as_led(step, structure)?;
         loop {
             let solved = self.solve(step, structure)?;
@@ -125,81 +123,6 @@ impl ConstraintSolver {
         let report = contacts.commit(&moving, next, (&self.places, &mut ws.row_force));
         self.contacts = contacts;
         Ok(report)
-    }
-
-    /// Changes forces of contacts, with those relations giving way that do so under them; whether there was anything to change.
-    ///
-    /// What contacts push with is found with relations as they hold, and may be more than these bear. It is taken back then, and found anew
-    /// with others giving way.
-    fn push_contacts(
-        &mut self,
-        (step, structure, mut solved): (&Step, &mut Structure, Solved),
-        contacts: &mut ContactSystem,
-        state: &SystemState,
-        positions: &[Vec3],
-    ) -> Result<bool, StepError> {
-        let mut pivoting = Pivoting::default();
-        loop {
-            let mut places = std::mem::take(&mut self.places);
-            self.unpushed.clone_from(&places);
-            self.unpushed_multipliers.clone_from(&self.multipliers);
-            let moving = self.moving(step, structure, positions, solved);
-            let improved = contacts.improve(&moving, state, &mut places);
-            self.places = places;
-            if !improved? {
-                return Ok(false);
-            }
-            self.follow_contacts(step, structure)?;
-            if !self.find_wrong_after_contacts(step, structure)? {
-                return Ok(true);
-            }
-            contacts.take_back();
-            self.places.clone_from(&self.unpushed);
-            self.multipliers.clone_from(&self.unpushed_multipliers);
-            self.switch(step, structure, &mut pivoting)?;
-            self.bring_back(step, structure)?;
-            solved = Solved::WithOthers;
-        }
-    }
-
-    /// Moves what contacts have pushed as relations let it move, by their gradients where the step starts. A push on one mass of a body would else bring
-    /// it as much farther as the body is heavier than it, where the body has no shape any more and what relations are off by says nothing of
-    /// the forces that they ask for.
-    fn follow_contacts(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
-        if structure.relation_count() == 0 {
-            return Ok(());
-        }
-        let square = step.timestep * step.timestep;
-        self.change.clear();
-        for (entries, active) in structure.starts.windows(2).zip(&self.active) {
-            let moved: Vec3 = (entries[0]..entries[1])
-                .map(|entry| {
-                    let row = structure.rows[entry] as usize;
-                    self.gradients[entry] * (self.places[row] - self.unpushed[row])
-                })
-                .sum();
-            self.change.push(Mat3::from_diagonal(*active) * moved * (-1.0 / square));
-        }
-        self.apply(step, structure)
-    }
-
-    fn moving<'a>(
-        &'a self,
-        step: &'a Step,
-        structure: &'a Structure,
-        positions: &'a [Vec3],
-        solved: Solved,
-    ) -> Moving<'a> {
-        Moving {
-            step,
-            structure,
-            positions,
-            solved,
-            before: &self.before,
-            inverse_masses: &self.inverse_masses,
-            gradients: &self.gradients,
-            active: &self.active,
-        }
     }
 
     /// Finds the multipliers under which the step leads to where all relations are what they are to be, but for those that give way.
@@ -234,7 +157,7 @@ impl ConstraintSolver {
     }
 
     /// Changes multipliers so that relations change by `h²` times what stands in their change, and where the step leads with them.
-    fn apply(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
+    pub(super) fn apply(&mut self, step: &Step, structure: &Structure) -> Result<(), StepError> {
         structure.solve(&mut self.change)?;
         self.push(step, structure);
         Ok(())

@@ -26,6 +26,8 @@ pub(crate) struct Structure {
     of_rows: Vec<(u32, u32)>,
     /// The least row that relations lead to from each row.
     bodies: Vec<u32>,
+    /// The least row that relations without a limit lead to.
+    unyielding: Vec<u32>,
     /// Slot of the matrix, and the two entries of one row whose product goes there.
     pub(super) products: Vec<(u32, [u32; 2])>,
     pub(super) matrix: BlockMatrix,
@@ -35,12 +37,14 @@ pub(crate) struct Structure {
 impl Structure {
     pub(super) fn new(system: &System) -> Result<Self, SolveError> {
         let (mut relations, mut starts, mut rows) = (Vec::new(), vec![0], Vec::new());
+        let mut yields = Vec::new();
         let forces = system.forces.iter().map(AsRef::as_ref).enumerate();
         for (force, set) in
             forces.filter_map(|(index, force): (usize, &dyn Force)| Some((index, force.constraint_set()?)))
         {
             for relation in 0..set.relation_count() {
                 relations.push((force, relation));
+                yields.push(set.yields_at(relation).is_some());
                 rows.extend_from_slice(set.rows(relation));
                 starts.push(rows.len());
             }
@@ -78,7 +82,8 @@ impl Structure {
             *sum += related.len();
             Some(*sum)
         }));
-        let bodies = bodies(&starts, &rows, of_row.len());
+        let unyielding = bodies(&starts, &rows, of_row.len(), |relation| !yields[relation]);
+        let bodies = bodies(&starts, &rows, of_row.len(), |_| true);
         let of_rows = of_row.concat();
         let matrix = BlockMatrix::zeros(pattern);
         Ok(Self {
@@ -89,6 +94,7 @@ impl Structure {
             row_starts,
             of_rows,
             bodies,
+            unyielding,
             products,
             matrix,
             solver,
@@ -103,9 +109,24 @@ impl Structure {
         self.of_entries[entry as usize] as usize
     }
 
-    /// Rows of one body are related to each other; no relation is of two bodies.
-    pub(crate) fn body(&self, row: usize) -> u32 {
-        self.bodies[row]
+    /// The body of each row: rows of one body are related to each other; no relation is of two bodies.
+    pub(super) fn bodies(&self) -> &[u32] {
+        &self.bodies
+    }
+
+    /// The same by relations without a limit alone.
+    pub(super) fn unyielding(&self) -> &[u32] {
+        &self.unyielding
+    }
+
+    /// Rows of a relation, with its gradients there.
+    pub(crate) fn gradients_of<'a>(
+        &'a self,
+        relation: usize,
+        gradients: &'a [Mat3],
+    ) -> impl Iterator<Item = (usize, Mat3)> + 'a {
+        let entries = self.starts[relation]..self.starts[relation + 1];
+        self.rows[entries.clone()].iter().map(|row| *row as usize).zip(gradients[entries].iter().copied())
     }
 
     /// The relations of a row, with the entry of each.
@@ -138,7 +159,7 @@ impl Structure {
 }
 
 /// The body of each row: rows that relations join have the least of them.
-fn bodies(starts: &[usize], rows: &[u32], row_count: usize) -> Vec<u32> {
+fn bodies(starts: &[usize], rows: &[u32], row_count: usize, joins: impl Fn(usize) -> bool) -> Vec<u32> {
     let mut least: Vec<u32> = (0..row_count as u32).collect();
     let root = |least: &mut [u32], mut row: u32| {
         while least[row as usize] != row {
@@ -147,7 +168,7 @@ fn bodies(starts: &[usize], rows: &[u32], row_count: usize) -> Vec<u32> {
         }
         row
     };
-    for entries in starts.windows(2) {
+    for (_, entries) in starts.windows(2).enumerate().filter(|(relation, _)| joins(*relation)) {
         for pair in rows[entries[0]..entries[1]].windows(2) {
             let [a, b] = [root(&mut least, pair[0]), root(&mut least, pair[1])];
             least[a.max(b) as usize] = a.min(b);

@@ -5,6 +5,7 @@ use souple_math::{Mat3, Vec3};
 use crate::state::{SystemState, pairs_of};
 use crate::steppers::{Step, StepError, StepReport};
 
+use super::places::{Entry, Law, Place};
 use super::{Contact, ContactSystem, Moving, described};
 
 impl ContactSystem {
@@ -38,7 +39,8 @@ impl ContactSystem {
         let mut worst = (0.0, (0, 0), 0);
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
-            let by = self.wanted_change(place, contact.force, self.off[place], contact.law.friction);
+            let law = Law::Cone(contact.law.friction);
+            let by = self.wanted_change(place, contact.force, self.off[place], law);
             let off = self.length_of(place, by);
             if off >= worst.0 {
                 worst = (off, contact.of, contact.sides.rows[0] as usize);
@@ -60,8 +62,14 @@ impl ContactSystem {
         size_of::<Contact>() * self.contacts.capacity()
             + size_of::<Vec3>() * vectors.iter().sum::<usize>()
             + size_of::<Mat3>() * self.blocks.capacity()
+            + size_of::<Place>() * self.places.capacity()
+            + size_of::<Entry>() * self.entries.capacity()
             + size_of::<[f64; 2]>() * self.stiffest.capacity()
-            + 8 * (self.touches.capacity() + self.starts.capacity() + self.own.capacity())
+            + size_of::<f64>() * self.reaches.capacity()
+            + 8 * (self.touches.capacity()
+                + self.entry_starts.capacity()
+                + self.starts.capacity()
+                + self.own.capacity())
             + self.is_sought.capacity()
             + 4 * (self.sought.capacity() + self.columns.capacity())
     }

@@ -1,19 +1,22 @@
-//! The operator of Delassus: what forces of contacts move contacts by, with relations held.
+//! The operator of Delassus: what forces of contacts, and multipliers between bounds, move these by, with other relations held.
 
 use souple_math::{Mat3, Vec3};
 
 use crate::steppers::StepError;
 
+use super::places::Entry;
 use super::{ContactSystem, Moving};
 
 impl ContactSystem {
-    /// Which contacts move each other: those that touch one body.
+    /// Which places move each other: those that touch one body.
     pub(super) fn lay_out(&mut self, moving: &Moving) {
+        self.take_places(moving);
         self.touches.clear();
-        for (place, contact) in self.sought.iter().enumerate() {
-            for (row, _) in self.contacts[*contact as usize].sides.iter() {
+        for place in 0..self.places.len() {
+            for entry in self.entry_starts[place]..self.entry_starts[place + 1] {
+                let row = self.entries[entry].row as usize;
                 if moving.inverse_masses[row] != Mat3::ZERO {
-                    self.touches.push((moving.structure.body(row), place as u32));
+                    self.touches.push((moving.bodies[row], place as u32));
                 }
             }
         }
@@ -22,13 +25,16 @@ impl ContactSystem {
         self.starts.clear();
         self.columns.clear();
         self.starts.push(0);
-        for place in 0..self.sought.len() {
+        for place in 0..self.places.len() {
             let first = self.columns.len();
             // its own is always there
             self.columns.push(place as u32);
-            let sides = self.contacts[self.sought[place] as usize].sides;
-            for (row, _) in sides.iter().filter(|(row, _)| moving.inverse_masses[*row] != Mat3::ZERO) {
-                let touching = self.touching(moving.structure.body(row));
+            for entry in self.entry_starts[place]..self.entry_starts[place + 1] {
+                let row = self.entries[entry].row as usize;
+                if moving.inverse_masses[row] == Mat3::ZERO {
+                    continue;
+                }
+                let touching = self.touching(moving.bodies[row]);
                 let Self { columns, touches, .. } = self;
                 columns.extend(touches[touching].iter().map(|(_, other)| *other));
             }
@@ -63,15 +69,14 @@ impl ContactSystem {
         let square = moving.step.timestep * moving.step.timestep;
         self.blocks.clear();
         self.blocks.resize(self.columns.len(), Mat3::ZERO);
-        for place in 0..self.sought.len() {
-            let contact = self.contacts[self.sought[place] as usize];
+        for place in 0..self.places.len() {
             for slot in self.starts[place]..self.starts[place + 1] {
-                let other = &self.contacts[self.sought[self.columns[slot] as usize] as usize];
+                let others = self.entries_of(self.columns[slot] as usize);
                 let mut block = Mat3::ZERO;
-                for (row, weight) in contact.sides.iter() {
-                    for (_, other_weight) in other.sides.iter().filter(|(other, _)| *other == row) {
-                        let moved = contact.frame * moving.inverse_masses[row];
-                        block += moved.mul_transpose(&other.frame) * (weight * other_weight * square);
+                for entry in self.entries_of(place) {
+                    for other in others.iter().filter(|other| other.row == entry.row) {
+                        let moved = entry.along * moving.inverse_masses[entry.row as usize];
+                        block += moved.mul_transpose(&other.along) * (entry.weight * other.weight * square);
                     }
                 }
                 self.blocks[slot] = block;
@@ -80,7 +85,7 @@ impl ContactSystem {
         self.subtract_relations(moving, square)?;
         self.stiffest.clear();
         self.own.clear();
-        for place in 0..self.sought.len() {
+        for place in 0..self.places.len() {
             self.own.push(self.slot(place, place as u32));
             let own = self.blocks[self.own[place]];
             let [a, b, c] = [own.entry(1, 1), own.entry(1, 2), own.entry(2, 2)];
@@ -90,7 +95,7 @@ impl ContactSystem {
         Ok(())
     }
 
-    /// What relations take of how far forces move contacts. One solve serves one contact of each body, since bodies do not share relations.
+    /// What relations take of how far forces move contacts. One solve serves one place of each body, since bodies do not share relations.
     fn subtract_relations(&mut self, moving: &Moving, square: f64) -> Result<(), StepError> {
         let structure = moving.structure;
         if structure.relation_count() == 0 {
@@ -106,17 +111,16 @@ impl ContactSystem {
                     let (body, _) = self.touches[first];
                     let of_body = self.touching(body);
                     first = of_body.end;
-                    let contact = self.touches[of_body]
-                        .get(turn)
-                        .map(|(_, place)| &self.contacts[self.sought[*place as usize] as usize]);
+                    let place = self.touches[of_body].get(turn).map(|(_, place)| *place as usize);
                     // nothing without friction pushes across
-                    if let Some(contact) = contact.filter(|it| axis == 0 || it.law.friction > 0.0) {
-                        let direction = contact.frame.row(axis);
-                        for (row, weight) in contact.sides.iter() {
-                            if structure.body(row) != body {
+                    if let Some(place) = place.filter(|it| self.places[*it].has_axis(axis)) {
+                        for at in self.entry_starts[place]..self.entry_starts[place + 1] {
+                            let Entry { row, weight, along } = self.entries[at];
+                            let row = row as usize;
+                            if moving.bodies[row] != body {
                                 continue;
                             }
-                            let moved = moving.inverse_masses[row] * direction * weight;
+                            let moved = moving.inverse_masses[row] * along.row(axis) * weight;
                             for (relation, entry) in structure.entries_of(row) {
                                 is_any = true;
                                 let part = Mat3::from_diagonal(moving.active[relation]);
@@ -135,12 +139,12 @@ impl ContactSystem {
         Ok(())
     }
 
-    /// The greatest number of contacts that touch one body.
+    /// The greatest number of places that touch one body.
     fn most_of_a_body(&self) -> usize {
         self.touches.chunk_by(|a, b| a.0 == b.0).map(<[_]>::len).max().unwrap_or(0)
     }
 
-    /// Takes one column of each body off, by the multipliers of relations that one contact of it asks for.
+    /// Takes one column of each body off, by the multipliers of relations that one place of it asks for.
     fn subtract_response(&mut self, moving: &Moving, (turn, axis): (usize, usize), square: f64) {
         let structure = moving.structure;
         let mut first = 0;
@@ -149,24 +153,28 @@ impl ContactSystem {
             let of_body = self.touching(body);
             first = of_body.end;
             let Some((_, column)) = self.touches[of_body.clone()].get(turn).copied() else { continue };
-            let law = self.contacts[self.sought[column as usize] as usize].law;
-            if axis > 0 && law.friction == 0.0 {
+            if !self.places[column as usize].has_axis(axis) {
                 continue;
             }
+            let of_this = |entry: &&Entry| moving.bodies[entry.row as usize] == body;
             for at in of_body {
                 let (_, place) = self.touches[at];
-                let contact = &self.contacts[self.sought[place as usize] as usize];
-                let mut moved = Vec3::ZERO;
-                for (row, weight) in contact.sides.iter().filter(|(row, _)| structure.body(*row) == body) {
+                let (mut change, mut moved) = (Vec3::ZERO, Vec3::ZERO);
+                let mut entries = self.entries_of(place as usize).iter().filter(of_this).peekable();
+                while let Some(entry) = entries.next() {
+                    let row = entry.row as usize;
                     let pull: Vec3 = structure
                         .entries_of(row)
                         .map(|(relation, entry)| {
                             moving.gradients[entry].transpose_apply(self.response[relation])
                         })
                         .sum();
-                    moved += moving.inverse_masses[row] * pull * (weight * square);
+                    moved += moving.inverse_masses[row] * pull * (entry.weight * square);
+                    // sides of a contact are along one frame
+                    if entries.peek().is_none_or(|next| next.along != entry.along) {
+                        change += entry.along * std::mem::take(&mut moved);
+                    }
                 }
-                let change = contact.frame * moved;
                 let slot = self.slot(place as usize, column);
                 let block = &mut self.blocks[slot];
                 let mut columns = block.columns;

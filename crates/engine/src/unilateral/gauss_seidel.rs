@@ -2,6 +2,7 @@
 
 use souple_math::Vec3;
 
+use super::places::{Law, Place};
 use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, SWEEPS_OF_ROUND};
 
 /// What a sweep did to forces.
@@ -14,14 +15,16 @@ pub(super) enum Sweep {
 impl ContactSystem {
     /// Finds what forces are to be changed by, in sweeps. The first of a step begins with the forces of the step before.
     pub(super) fn solve(&mut self, is_first: bool) {
-        let count = self.sought.len();
+        let count = self.places.len();
         for list in [&mut self.change, &mut self.swept, &mut self.direction] {
             list.clear();
             list.resize(count, Vec3::ZERO);
         }
-        if is_first {
-            for (place, contact) in self.sought.iter().enumerate() {
-                self.change[place] = self.contacts[*contact as usize].force_before;
+        for (place, contact) in self.sought.iter().enumerate() {
+            let contact = &self.contacts[*contact as usize];
+            self.places[place].force = contact.force;
+            if is_first {
+                self.change[place] = contact.force_before;
             }
         }
         let mut size_before = f64::INFINITY;
@@ -47,18 +50,18 @@ impl ContactSystem {
         }
     }
 
-    /// Gives each contact in turn the force that it asks for.
+    /// Gives each place in turn the force that it asks for.
     pub(super) fn sweep(&mut self) -> Sweep {
         let mut found = Sweep::Settled;
-        for place in 0..self.sought.len() {
-            let contact = &self.contacts[self.sought[place] as usize];
+        for place in 0..self.places.len() {
+            let Place { force, law, near, .. } = self.places[place];
             let mut off = self.off[place];
             for slot in self.starts[place]..self.starts[place + 1] {
                 off += self.blocks[slot] * self.change[self.columns[slot] as usize];
             }
-            let by = self.wanted_change(place, contact.force + self.change[place], off, contact.law.friction);
+            let by = self.wanted_change(place, force + self.change[place], off, law);
             // closer than is asked where the step leads, where it is measured again
-            if self.length_of(place, by) > 0.2 * (CONVERGED * self.scale + contact.near) {
+            if self.length_of(place, by) > 0.2 * (CONVERGED * self.tightness * self.scale + near) {
                 found = Sweep::Moved;
             }
             self.swept[place] = by;
@@ -67,13 +70,19 @@ impl ContactSystem {
         found
     }
 
-    /// What a contact that is off asks its force to change by: the projection onto signs, and then onto the friction cone, with the slip that the
-    /// normal force leaves.
-    pub(super) fn wanted_change(&self, place: usize, force: Vec3, off: Vec3, friction: f64) -> Vec3 {
+    /// What a place that is off asks its force to change by: the projection onto bounds, or onto signs and then onto the friction cone, with the slip
+    /// that the normal force leaves.
+    pub(super) fn wanted_change(&self, place: usize, force: Vec3, off: Vec3, law: Law) -> Vec3 {
         let [normal, tangent] = self.stiffest[place];
         if normal <= 0.0 {
             return Vec3::ZERO;
         }
+        let friction = match law {
+            Law::Cone(friction) => friction,
+            Law::Bounds(limit) => {
+                return Vec3::X * ((force.x - off.x / normal).clamp(-limit, limit) - force.x);
+            }
+        };
         let push = (force.x - off.x / normal).max(0.0);
         let slip = off + self.blocks[self.own[place]].columns[0] * (push - force.x);
         let held = friction * push;
@@ -88,9 +97,13 @@ impl ContactSystem {
         Vec3::new(push, y, z) - force
     }
 
-    /// How far a change of a contact's force moves itself [m].
+    /// How far a change of the force of a place moves itself [m].
     pub(super) fn length_of(&self, place: usize, change: Vec3) -> f64 {
         let [normal, tangent] = self.stiffest[place];
+        let Place { law, slope, .. } = self.places[place];
+        if let Law::Bounds(_) = law {
+            return change.x.abs() * normal / slope;
+        }
         (change.x.abs() * normal).max(change.y.hypot(change.z) * tangent)
     }
 
@@ -99,7 +112,8 @@ impl ContactSystem {
         let (mut worst, mut is_solved) = (0.0_f64, true);
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
-            let by = self.wanted_change(place, contact.force, self.off[place], contact.law.friction);
+            let law = Law::Cone(contact.law.friction);
+            let by = self.wanted_change(place, contact.force, self.off[place], law);
             let off = self.length_of(place, by);
             worst = worst.max(off);
             is_solved &= off <= contact.near + CONVERGED * self.scale;

@@ -13,11 +13,14 @@
 //!
 //! Forces follow by a projected Gauss–Seidel method over contacts, whose changes are extrapolated as those of conjugate gradients are
 //! (Silcowitz-Hansen, Niebe & Erleben 2010), with the matrix `D = h² J W̃ Jᵀ` of what forces move contacts by. `W̃` are inverse masses with relations:
-//! a rigid body is masses on exact rods. Where more contacts bear than are needed, of all forces that do the same those are found that are near to those of the step before.
+//! a rigid body is masses on exact rods. Multipliers of relations that yield are swept for beside contacts, within bounds in the place of cones, where
+//! these decide which of them give way ([`crate::binding`]); the other relations are eliminated then.
+//! Where more contacts bear than are needed, of all forces that do the same those are found that are near to those of the step before.
 
 mod commit;
 mod delassus;
 mod gauss_seidel;
+mod places;
 mod search;
 
 use souple_math::{Mat3, Vec3};
@@ -27,19 +30,27 @@ use crate::state::{Pair, SystemState, pairs_of};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::System;
 
+pub(crate) use places::Bounded;
+use places::{Entry, Place};
+
 /// Of the greatest way by which a gap would be missed without forces: contacts that are off by less are solved. What several contacts
 /// of a body ask of it must agree to this, or they hand forces on to each other without end: relations hold well below it.
 const CONVERGED: f64 = 1e-7;
 /// Likewise, what is let pass when no sweeps are left; the report of the step tells it.
 const LET_PASS: f64 = 1e-4;
-/// Of coordinates: ten times what relations are off by, for the same reason.
+/// Of coordinates, or of the longest way in the step: ten times what relations are off by, for the same reason.
 const TOLERANCE: f64 = 1e-11;
+/// Of coordinates of a body, what its relations are off by.
+const OF_RELATIONS: f64 = 1e-12;
 /// Sweeps over all contacts of a step.
 const MOST_SWEEPS: u64 = 20_000;
 /// Sweeps after which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
 const SWEEPS_OF_ROUND: u64 = 500;
 /// Each makes the curvature of gaps and relations within the step the square of what it was, or finds contacts that others push together.
 const MOST_ROUNDS: u32 = 100;
+/// Of how far off contacts may be, what they may be after another search with multipliers between bounds than after the one before: relations that
+/// hold after it share out anew what it has left.
+const TIGHTER: f64 = 0.1;
 /// Points of a contact, at most: of two, or one against a triangle.
 pub const MOST_SIDES: usize = 4;
 
@@ -100,6 +111,11 @@ impl Sides {
         self.iter().skip(self.first).map(|(row, weight)| (row, -weight))
     }
 
+    /// The sum of weights, without their signs.
+    fn weight(&self) -> f64 {
+        self.iter().map(|(_, weight)| weight.abs()).sum()
+    }
+
     fn relative(&self, of_rows: impl Fn(usize) -> Vec3) -> Vec3 {
         self.iter().map(|(row, weight)| of_rows(row) * weight).sum()
     }
@@ -152,6 +168,10 @@ pub(crate) struct Moving<'a> {
     pub gradients: &'a [Mat3],
     /// Ones in the components of relations that forces change.
     pub active: &'a [Vec3],
+    /// Of each row: those of one body move each other by relations that are solved for.
+    pub bodies: &'a [u32],
+    /// Multipliers of other relations, that are swept for.
+    pub bounded: &'a [Bounded],
 }
 
 /// A contact in a step. Vectors are along the normal and two tangents.
@@ -190,13 +210,17 @@ pub(crate) struct ContactSystem {
     off: Vec<Vec3>,
     /// Of each contact, whether forces are sought of it.
     is_sought: Vec<bool>,
-    /// `(body, place among the sought)`, sorted.
+    /// Those that are sought, and multipliers beside them; what each moves.
+    places: Vec<Place>,
+    entry_starts: Vec<usize>,
+    entries: Vec<Entry>,
+    /// `(body, place)`, sorted.
     touches: Vec<(u32, u32)>,
     /// `D` by rows: where those of each begin, columns ascending, blocks [m/N].
     starts: Vec<usize>,
     columns: Vec<u32>,
     blocks: Vec<Mat3>,
-    /// Of each that is sought the slot on the diagonal, `D_nn`, and the greatest eigenvalue of `D_tt`.
+    /// Of each place the slot on the diagonal, `D_nn`, and the greatest eigenvalue of `D_tt`.
     own: Vec<usize>,
     stiffest: Vec<[f64; 2]>,
     /// What forces are changed by, in all and in a sweep, and the direction that changes go on in.
@@ -204,9 +228,15 @@ pub(crate) struct ContactSystem {
     swept: Vec<Vec3>,
     direction: Vec<Vec3>,
     response: Vec<Vec3>,
+    /// The greatest coordinate of a body, at its least row [m].
+    reaches: Vec<f64>,
     /// The greatest way by which a gap or a slip is off without forces [m].
     scale: f64,
+    /// Of how far off they may be, what sweeps go on to.
+    tightness: f64,
     rounds: u32,
+    /// Whether multipliers are among the places.
+    has_bounded: bool,
     /// Whether it is known in this step which collide.
     are_decided: bool,
     report: StepReport,

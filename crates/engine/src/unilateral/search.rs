@@ -6,7 +6,10 @@ use crate::binding::Solved;
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 
-use super::{Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, TOLERANCE, fault, pairs_in};
+use super::{
+    Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE, fault,
+    pairs_in,
+};
 
 impl ContactSystem {
     /// Looks which contacts there are where the step starts, and takes their forces of the step before, which are among those that were summed, off where
@@ -21,7 +24,7 @@ impl ContactSystem {
         self.contacts.clear();
         self.sought.clear();
         (self.rounds, self.report) = (0, StepReport::default());
-        self.are_decided = false;
+        (self.are_decided, self.has_bounded, self.tightness) = (false, false, 1.0);
         let earlier = (start - timestep).max(0.0);
         for (index, force) in system.forces.iter().enumerate() {
             let Some(unilateral) = force.unilateral() else { continue };
@@ -49,7 +52,6 @@ impl ContactSystem {
                     .iter()
                     .flat_map(|(row, _)| moving.positions[row].to_array())
                     .fold(0.0_f64, |most, x| most.max(x.abs()));
-                let weights: f64 = sides.iter().map(|(_, weight)| weight.abs()).sum();
                 self.contacts.push(Contact {
                     of: (index, number),
                     sides,
@@ -62,11 +64,32 @@ impl ContactSystem {
                     carried: unilateral.surface_velocity(number, start + timestep) * timestep,
                     force: Vec3::ZERO,
                     force_before: frame * stored,
-                    near: TOLERANCE * weights * reach,
+                    near: TOLERANCE * sides.weight() * reach,
                 });
             }
         }
+        self.allow_rounding(moving, places);
         Ok(())
+    }
+
+    /// Lets contacts be off by rounding of the longest way in the step, and by what relations of their bodies may be off: masses near the origin are not
+    /// known better than what pushes them.
+    fn allow_rounding(&mut self, moving: &Moving, places: &[Vec3]) {
+        let largest = |x: Vec3| x.to_array().into_iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let mut way = 0.0_f64;
+        self.reaches.clear();
+        self.reaches.resize(places.len(), 0.0);
+        for (row, (to, from)) in places.iter().zip(moving.positions).enumerate() {
+            way = way.max(largest(*to - *from));
+            let reach = &mut self.reaches[moving.bodies[row] as usize];
+            *reach = reach.max(largest(*from));
+        }
+        for contact in &mut self.contacts {
+            let of_sides = contact.sides.iter().map(|(row, _)| self.reaches[moving.bodies[row] as usize]);
+            let reach = of_sides.fold(0.0_f64, f64::max);
+            let least = (TOLERANCE * way).max(OF_RELATIONS * reach);
+            contact.near = contact.near.max(contact.sides.weight() * least);
+        }
     }
 
     /// Where forces of contacts are to be changed after relations hold: changes them, and where the step leads with them; whether there was anything to change.
@@ -86,10 +109,11 @@ impl ContactSystem {
             return Ok(false);
         }
         // what follows asks how contacts move each other, that a step is given up too
-        if is_more {
+        let is_other = is_more || std::mem::take(&mut self.has_bounded);
+        if is_other {
             self.lay_out(moving);
         }
-        if is_more || moving.solved == Solved::WithOthers {
+        if is_other || moving.solved == Solved::WithOthers {
             self.fill(moving)?;
         }
         if !is_more && self.is_solved() {
@@ -106,6 +130,30 @@ impl ContactSystem {
                 .fold(0.0, |most, off| off.to_array().map(f64::abs).into_iter().fold(most, f64::max));
         }
         self.solve(is_first);
+        self.push(moving, places);
+        Ok(true)
+    }
+
+    /// Finds what the last improvement was to find together with multipliers between bounds, from where it began, and changes where the step leads by what
+    /// contacts push; what multipliers are to change by.
+    pub(crate) fn improve_with_bounded(
+        &mut self,
+        moving: &Moving,
+        places: &mut [Vec3],
+    ) -> Result<&[Vec3], StepError> {
+        self.take_back();
+        self.has_bounded = true;
+        self.off.extend(moving.bounded.iter().map(|bounded| Vec3::X * bounded.off));
+        self.lay_out(moving);
+        self.fill(moving)?;
+        self.solve(self.rounds == 1);
+        self.tightness *= TIGHTER;
+        self.push(moving, places);
+        Ok(&self.change[self.sought.len()..])
+    }
+
+    /// Changes forces of contacts by what was found, and where the step leads.
+    fn push(&mut self, moving: &Moving, places: &mut [Vec3]) {
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &mut self.contacts[*contact as usize];
             let change = self.change[place];
@@ -116,14 +164,12 @@ impl ContactSystem {
                 places[row] += moved * (weight * moving.step.timestep * moving.step.timestep);
             }
         }
-        Ok(true)
     }
 
-    /// Takes back what forces were changed by last: relations do not bear it.
-    pub(crate) fn take_back(&mut self) {
-        self.rounds -= 1;
-        for (contact, change) in self.sought.iter().zip(&self.change) {
-            self.contacts[*contact as usize].force -= *change;
+    /// Takes back what forces were changed by last.
+    fn take_back(&mut self) {
+        for (contact, place) in self.sought.iter().zip(&self.places) {
+            self.contacts[*contact as usize].force = place.force;
         }
     }
 
