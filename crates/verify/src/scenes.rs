@@ -33,6 +33,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("cooks_membrane", include_str!("../../../scenes/cooks_membrane/scene.toml")),
     ("crane", include_str!("../../../scenes/crane/scene.toml")),
     ("crooked_patch", include_str!("../../../scenes/crooked_patch/scene.toml")),
+    ("crushed_landing", include_str!("../../../scenes/crushed_landing/scene.toml")),
     ("crushed_legs", include_str!("../../../scenes/crushed_legs/scene.toml")),
     ("cut_bar", include_str!("../../../scenes/cut_bar/scene.toml")),
     ("cut_touched", include_str!("../../../scenes/cut_touched/scene.toml")),

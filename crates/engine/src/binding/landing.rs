@@ -132,7 +132,7 @@ impl Unilateral for Floor {
         self.count
     }
 
-    fn sides(&self, contact: usize, _pairs: &[Pair]) -> Sides {
+    fn sides(&self, contact: usize, _pairs: &[Pair], _positions: &[Vec3]) -> Sides {
         Sides::one(contact as u32)
     }
 

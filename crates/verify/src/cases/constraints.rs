@@ -74,6 +74,13 @@ const CRUSHED: Case = Case {
     ..MOULDED
 };
 
+const LANDED: Case = Case {
+    scene: "crushed_landing",
+    reading: Reading::component("weight", 1),
+    mutation: r#"networks.lander.constraints[0].yields_at="40.5 N""#,
+    ..CRUSHED
+};
+
 const DRAWN: Case = Case {
     scene: "drawn_wire",
     reading: Reading::last("given_off").after(1),
@@ -417,6 +424,45 @@ pub(super) const CASES: &[Case] = &[
         // as above, times 4 Y
         tolerance: Tolerance::Absolute(2e-7),
         ..CRUSHED
+    },
+    Case {
+        id: "crushed_landing_stops",
+        what: "height at which a weight rests that is thrown at a floor on two oblique legs which give way",
+        // 2 Y δ = ½ m (v² + 2 g d) + m g (H − y), y² = (L − δ)² − a²
+        reference: 0.762_165_360_267_224_6,
+        // it lands within a step, v h, and is braked before it moves in each, v h/2, by 1.4 times what stops it: its weight is the rest
+        tolerance: Tolerance::Absolute(9.5e-4),
+        ..LANDED
+    },
+    Case {
+        id: "crushed_landing_is_borne",
+        what: "what the floor bears of that when it rests",
+        reading: Reading::component("lander_borne", 1),
+        reference: 22.0,
+        // gaps to 1e-7 of what legs would push feet of 0.1 kg in a step, by which 2.2 kg are held: 1e-7 · 11 N/0.1 kg · 2.2 kg
+        tolerance: Tolerance::Absolute(2.5e-5),
+        mutation: "networks.lander.masses.weight.mass=2.01",
+        ..LANDED
+    },
+    Case {
+        id: "crushed_frame_is_borne",
+        what: "what the floor bears of a frame braced twice that has landed on a corner",
+        reading: Reading::component("frame_borne", 1),
+        reference: 40.0,
+        // likewise
+        tolerance: Tolerance::Relative(1e-6),
+        mutation: "networks.frame.masses.joints.mass=0.501",
+        ..LANDED
+    },
+    Case {
+        id: "crushed_landing_rests",
+        what: "kinetic energy that is left of both",
+        reading: Reading::last("moving"),
+        reference: 1e-9,
+        tolerance: Tolerance::AtMost,
+        // the frame still falls over then
+        mutation: r#"run.duration="1.5 s""#,
+        ..LANDED
     },
     Case {
         id: "led_wire_flows",
