@@ -48,7 +48,7 @@ sense = "at_most"
     let taken = 7.0 * 0.035;
     let mut flow = 0.0;
     world.visit_forces(0, &mut |force, at| {
-        if force.name() == "leg" {
+        if force.name() == "leg.leg" {
             flow = -at.memory[0];
         }
     });
