@@ -26,6 +26,9 @@ pub struct QuadraticProgram {
     pub rows: Vec<Row>,
 }
 
+/// Conditions of a least that are missed by more of the size of the answer are not met: a thousand times what rounding leaves of the worst.
+const UNSOLVED: f64 = 1e-5;
+
 /// `d(g·x, [a, b])` at a price.
 #[derive(Clone, Debug)]
 pub struct Row {
@@ -49,7 +52,7 @@ pub struct Least {
 }
 
 impl QuadraticProgram {
-    /// The least; `None` where there are numbers that are not finite.
+    /// The least; `None` where there are numbers that are not finite, or so unlike that no step comes near it.
     pub fn solve(&self) -> Option<Least> {
         let scaled = Scaled::of(self)?;
         let mut least = interior::least(&scaled)?;
@@ -59,6 +62,9 @@ impl QuadraticProgram {
                 Some(better) if better.residual <= least.residual => least = better,
                 _ => break,
             }
+        }
+        if least.residual > UNSOLVED {
+            return None;
         }
         let values = least.values.iter().zip(&scaled.sizes).map(|(value, size)| value * size);
         let values = values.zip(&self.bounds).map(|(value, [low, high])| value.clamp(*low, *high));
@@ -204,7 +210,7 @@ impl Scaled {
         };
         set(&mut values, &base);
         let factor = Factor::of(of_free.len(), |i, j| dot(&of_free[i], &of_free[j]));
-        // twice: once leaves what rounding of the first has left
+        // again and again: each leaves what rounding of the one before has left
         for _ in 0..3 {
             let short = holding.iter().map(|(at, side)| side - dot(&self.rows[*at].slopes, &values));
             let mut change: Vec<f64> = short.collect();

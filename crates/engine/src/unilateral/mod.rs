@@ -84,7 +84,7 @@ impl Sides {
         Self::between([(a, 1.0)], [(b, 1.0)])
     }
 
-    /// Points with their shares of a place, against others with theirs; [`MOST_SIDES`] in all.
+    /// Points with their shares of a place, against others with theirs; at most [`MOST_SIDES`] in all.
     pub fn between<const A: usize, const B: usize>(first: [(u32, f64); A], second: [(u32, f64); B]) -> Self {
         const { assert!(A + B <= MOST_SIDES) };
         let mut sides = Self { rows: [0; MOST_SIDES], weights: [0.0; MOST_SIDES], count: A + B, first: A };

@@ -2,7 +2,7 @@
 
 use super::dot;
 
-/// A pivot below this share of the greatest belongs to a row that others say already.
+/// A pivot below this share of what the row's own entry was belongs to a row that others say already.
 const PIVOT: f64 = 1e-15;
 
 /// A Cholesky factor by rows; a row that others say already is left out.
@@ -13,15 +13,15 @@ pub(super) struct Factor {
 impl Factor {
     pub fn of(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let mut rows: Vec<Vec<f64>> = (0..count).map(|i| (0..=i).map(|j| entry(i, j)).collect()).collect();
-        let greatest = rows.iter().map(|row| row[row.len() - 1]).fold(0.0, f64::max);
         for i in 0..count {
             let (above, rest) = rows.split_at_mut(i);
             let row = &mut rest[0];
+            let own = row[i];
             for (j, of) in above.iter().enumerate() {
                 row[j] = (row[j] - dot(&row[..j], &of[..j])) / of[j];
             }
             let pivot = row[i] - dot(&row[..i], &row[..i]);
-            row[i] = if pivot > PIVOT * greatest { pivot.sqrt() } else { f64::INFINITY };
+            row[i] = if pivot > PIVOT * own { pivot.sqrt() } else { f64::INFINITY };
         }
         Self { rows }
     }

@@ -56,6 +56,36 @@ fn bounds_cut_what_a_row_asks_for() {
     assert!(least.residual < 1e-12, "{}", least.residual);
 }
 
+/// Bands that hold nothing change nothing, however wide: of 100 steps of a mass that goes a way and comes to rest, `x = λ (49.5 − n)` with `λ = 1/Σ (49.5 − n)²`,
+/// interior steps alone come there too.
+#[test]
+fn wide_bands_change_nothing() {
+    let way: Vec<f64> = (0..100).map(|n| 99.5 - f64::from(n)).collect();
+    let gain = 1.0 / (0..100).map(|n| (49.5 - f64::from(n)).powi(2)).sum::<f64>();
+    for width in [0.1, 10.0, 1e3, 1e6, 1e9] {
+        let mut rows = vec![row(&way, [1.0, 1.0], 1e6), row(&[1.0; 100], [0.0, 0.0], 1e6)];
+        // how far it has come after each step
+        rows.extend((1..100_i32).map(|count| {
+            let until: Vec<f64> = (0..100).map(|n| (f64::from(count - n) - 0.5).max(0.0)).collect();
+            row(&until, [-1.0 - width, 1.0 + width], 1e6)
+        }));
+        let program = QuadraticProgram {
+            curvature: vec![1.0; 100],
+            gradient: vec![0.0; 100],
+            bounds: vec![[-1.0, 1.0]; 100],
+            rows,
+        };
+        let scaled = Scaled::of(&program).unwrap();
+        let interior = interior::least(&scaled).unwrap();
+        assert!(interior.residual < 1e-8, "{width}: {}", interior.residual);
+        let least = program.solve().unwrap();
+        for (n, value) in least.values.iter().enumerate() {
+            let exact = gain * (49.5 - n as f64);
+            assert!((value - exact).abs() < 1e-10 * gain * 49.5, "{width}: {n}: {value} {exact}");
+        }
+    }
+}
+
 /// What cannot be is missed by the least; what is dear is met, what is cheap is not.
 #[test]
 fn rows_that_contradict_are_missed_by_the_least() {

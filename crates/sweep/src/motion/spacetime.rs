@@ -92,9 +92,9 @@ impl<'a> Search<'a> {
             let keys = course.keys.iter().filter(|key| key.period > window.start).count();
             let commands = window.len() * count;
             if keys > MOST_KEYS || keys.saturating_mul(commands) > MOST_SLOPES {
-                let found = format!("{keys} and {commands} commands that are sought at once");
+                let found = format!("{keys} keys and {commands} commands that are sought at once");
                 let expected = format!(
-                    "at most {MOST_KEYS}, each period of a span being one, and {MOST_SLOPES} slopes of them by commands: shorter spans, or \
+                    "at most {MOST_KEYS}, each period of a span being one, and {MOST_SLOPES} slopes of them by commands: shorter spans, or, for slopes, \
                      shorter `windows`"
                 );
                 return Err(SweepError::value("plan.keys", found, expected));
@@ -285,8 +285,8 @@ impl<'a> Search<'a> {
                 row.price = price * size / length;
             }
             program.solve().ok_or_else(|| {
-                let expected = "keys that commands reach";
-                SweepError::value("plan.keys", "a motion with no finite commands", expected)
+                let expected = "keys and `weights` of alike sizes, that commands reach";
+                SweepError::value("plan.keys", "a motion with no commands that can be computed", expected)
             })
         };
         let mut least = at_price(PRICES[0])?;

@@ -23,7 +23,7 @@ impl Polyhedra {
         let count = features.bodies.len();
         let pairs = (0..count).flat_map(|one| (0..count).map(move |other| [one, other]));
         pairs
-            .filter(|[one, other]| one != other && !features.are_joined(*one.min(other), *one.max(other)))
+            .filter(|[one, other]| one != other && features.may_meet([*one.min(other), *one.max(other)]))
             .find_map(|bodies| {
                 let row = features.entered(bodies, positions, tolerance)?;
                 Some(Entered { bodies, row })

@@ -75,7 +75,7 @@ pub(super) struct Features {
     pub faces: Vec<[u32; 3]>,
     pub edges: Vec<Edge>,
     pub bodies: Vec<Body>,
-    /// Pairs of bodies that share masses, ascending.
+    /// Pairs of bodies that share corners, ascending.
     joined: Vec<[u32; 2]>,
 }
 
@@ -120,7 +120,7 @@ impl Features {
         });
     }
 
-    /// Looks which bodies share masses.
+    /// Looks which bodies share corners.
     fn join(&mut self) {
         let mut owners: Vec<[u32; 2]> = Vec::new();
         for (body, features) in self.bodies.iter().enumerate() {
@@ -136,9 +136,15 @@ impl Features {
         self.joined.dedup();
     }
 
-    /// Whether two bodies, in ascending order, share masses, so that they do not meet.
+    /// Whether two bodies, in ascending order, share corners.
     pub fn are_joined(&self, one: usize, other: usize) -> bool {
         self.joined.binary_search(&[one as u32, other as u32]).is_ok()
+    }
+
+    /// Whether two bodies, in ascending order, meet at all: one of them has faces, and they share no corners.
+    pub fn may_meet(&self, [one, other]: [usize; 2]) -> bool {
+        let has_faces = |body: usize| !self.bodies[body].faces.is_empty();
+        (has_faces(one) || has_faces(other)) && !self.are_joined(one, other)
     }
 
     /// The body of a corner, an edge or a face.

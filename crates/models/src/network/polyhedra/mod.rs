@@ -57,6 +57,12 @@ impl Polyhedra {
         Self { name, features: Features::new(&bodies, rest_positions), law, timestep, detection }
     }
 
+    /// Whether any two of the bodies meet: one has faces, and they share no corners.
+    pub fn may_meet(&self) -> bool {
+        let count = self.features.bodies.len();
+        (0..count).any(|other| (0..other).any(|one| self.features.may_meet([one, other])))
+    }
+
     fn meets(pair: &Pair) -> Meets {
         Meets::of([pair.a, pair.b])
             .unwrap_or_else(|| unreachable!("pairs are searched, or have been accepted"))
@@ -250,7 +256,8 @@ impl Force for Polyhedra {
         is_ordered
             && one != other
             && (!needs_ball || self.features.bodies[one].radius > 0.0)
-            && !self.features.are_joined(one.min(other), one.max(other))
+            && !self.features.bodies[other].faces.is_empty()
+            && self.features.may_meet([one.min(other), one.max(other)])
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {

@@ -17,8 +17,10 @@ const BORDER: f64 = 1e-6;
 const ENDS: f64 = 1e-7;
 /// What has entered by less touches from outside, as a share of how far it is looked; contacts are found to 1e-7 of what moves.
 const TOUCHES: f64 = 1e-5;
-/// Sine of the angle by which features that come to lie on each other may be tilted yet.
+/// Sine of the angle by which features that come to lie on each other may be tilted yet, at most; as far as they may turn in a step.
 const TILT: f64 = 0.2;
+/// Steps ago in which what has entered was still outside: one, and what turning makes of it.
+const AGO: f64 = 1.5;
 /// Sine of the angle below which two edges are parallel, and corners on faces bear.
 const PARALLEL: f64 = 1e-3;
 /// Sine of the angle by which an edge stands out at least.
@@ -77,11 +79,14 @@ impl Around {
 #[derive(Clone, Copy)]
 struct Met<'a> {
     features: &'a Features,
-    positions: &'a [Vec3],
+    at: &'a Configuration<'a>,
+    timestep: f64,
     /// Of the balls of the first [m].
     radius: f64,
     /// How far apart features are looked for [m].
     reach: f64,
+    /// Sine of the angle by which they may be tilted.
+    tilt: f64,
 }
 
 impl Search {
@@ -96,8 +101,8 @@ impl Search {
                     break;
                 }
                 let bodies = [one.min(other), one.max(other)];
-                if self.boxes[other].meets(&around) && !features.are_joined(bodies[0], bodies[1]) {
-                    self.between(features, bodies, at.positions, found);
+                if self.boxes[other].meets(&around) && features.may_meet(bodies) {
+                    self.between((features, timestep), bodies, at, found);
                 }
             }
         }
@@ -124,18 +129,22 @@ impl Search {
     /// Lists what of two bodies may touch.
     fn between(
         &mut self,
-        features: &Features,
+        (features, timestep): (&Features, f64),
         bodies: [usize; 2],
-        positions: &[Vec3],
+        at: &Configuration,
         found: &mut Vec<Pair>,
     ) {
         let reach = bodies.iter().map(|body| self.boxes[*body].reach).sum();
+        let size = bodies.iter().map(|body| features.bodies[*body].size).fold(f64::INFINITY, f64::min);
+        let way = reach - SKIN * bodies.iter().map(|body| features.bodies[*body].size).sum::<f64>();
+        let tilt = (TOUCHES + way / size).clamp(TOUCHES, TILT);
+        let met = Met { features, at, timestep, radius: 0.0, reach, tilt };
         for (side, body) in bodies.into_iter().enumerate() {
             let other = self.boxes[bodies[1 - side]];
-            self.near[side].fill((features, positions), body, &self.boxes[body], &other);
+            self.near[side].fill((features, at.positions), body, &self.boxes[body], &other);
         }
         for (side, body) in bodies.into_iter().enumerate() {
-            let met = Met { features, positions, radius: features.bodies[body].radius, reach };
+            let met = Met { radius: features.bodies[body].radius, ..met };
             let other = &self.near[1 - side];
             for corner in self.near[side].corners.iter().copied() {
                 met.faces(corner, &other.faces, found);
@@ -144,7 +153,6 @@ impl Search {
                 }
             }
         }
-        let met = Met { features, positions, radius: 0.0, reach };
         for one in self.near[0].edges.iter().copied() {
             for other in self.near[1].edges.iter().copied() {
                 if met.edges_cross(one, other) {
@@ -191,73 +199,96 @@ fn push(meets: Meets, found: &mut Vec<Pair>) {
 }
 
 impl Met<'_> {
-    /// Faces that a corner is above, or if it is above none the one that it has entered least.
+    fn place(&self, corner: usize) -> Vec3 {
+        self.at.positions[self.features.corners[corner].row as usize]
+    }
+
+    /// How deep what only touches may be [m].
+    fn touch(&self) -> f64 {
+        TOUCHES * self.reach
+    }
+
+    /// Whether what has entered was outside where the step before began: what comes from behind is not put out in front.
+    fn came_from_outside(&self, meets: Meets) -> bool {
+        let meeting = self.features.meeting(meets, self.at.positions);
+        let Some(normal) = meeting.normal else { return false };
+        let parting: Vec3 = meeting.sides.iter().map(|(row, weight)| self.at.velocities[row] * weight).sum();
+        let before = meeting.distance - self.radius - AGO * self.timestep * normal.dot(parting);
+        before >= -self.touch()
+    }
+
+    /// Faces that a corner is above, or, if it is above none, that which it has entered least.
     fn faces(&self, corner: usize, faces: &[usize], found: &mut Vec<Pair>) {
-        let point = self.positions[self.features.corners[corner].row as usize];
+        let point = self.place(corner);
         let mut is_outside = false;
-        let mut entered: Option<(f64, usize)> = None;
+        let mut entered: Option<(f64, Meets)> = None;
         for face in faces.iter().copied() {
-            let places = self.features.faces[face].map(|row| self.positions[row as usize]);
+            let places = self.features.faces[face].map(|row| self.at.positions[row as usize]);
             let (shares, normal) = foot_on_plane(places, point);
             let Some(normal) = normal else { continue };
-            let distance = normal.dot(point - places[0]);
+            let gap = normal.dot(point - places[0]) - self.radius;
             let least = shares.into_iter().fold(f64::INFINITY, f64::min);
-            if distance - self.radius > self.reach || distance < -self.reach || least < -BORDER {
+            if gap.abs() > self.reach || least < -BORDER {
                 continue;
             }
             // on its border it may be beside the face as well
             if least < BORDER && !self.bears(corner, normal) {
                 continue;
             }
-            if distance >= -TOUCHES * self.reach {
+            let meets = Meets::Face { corner, face };
+            if gap >= -self.touch() {
                 is_outside = true;
-                push(Meets::Face { corner, face }, found);
-            } else if entered.is_none_or(|(before, _)| distance > before) {
-                entered = Some((distance, face));
+                push(meets, found);
+            } else if entered.is_none_or(|(before, _)| gap > before) && self.came_from_outside(meets) {
+                entered = Some((gap, meets));
             }
         }
-        if let Some((_, face)) = entered.filter(|_| !is_outside) {
-            push(Meets::Face { corner, face }, found);
+        if let Some((_, meets)) = entered.filter(|_| !is_outside) {
+            push(meets, found);
         }
     }
 
     /// Whether a corner that is on a plane leaves its body above it.
     fn bears(&self, corner: usize, normal: Vec3) -> bool {
-        let place = self.positions[self.features.corners[corner].row as usize];
+        let place = self.place(corner);
         self.features.neighbours_of(corner).all(|row| {
-            let to = self.positions[row] - place;
-            normal.dot(to) >= -TILT * to.length()
+            let to = self.at.positions[row] - place;
+            normal.dot(to) >= -self.tilt * to.length()
         })
     }
 
     /// Edges and corners that the centre of a ball is beside, and not above a face.
     fn borders(&self, corner: usize, other: &Near, found: &mut Vec<Pair>) {
-        let (features, positions) = (self.features, self.positions);
-        let point = positions[features.corners[corner].row as usize];
-        let is_near = |from: Vec3| from.length() < self.radius + self.reach;
+        let (features, positions) = (self.features, self.at.positions);
+        let point = self.place(corner);
+        let take = |from: Vec3, meets: Meets, found: &mut Vec<Pair>| {
+            let gap = from.length() - self.radius;
+            if gap < self.reach && (gap >= -self.touch() || self.came_from_outside(meets)) {
+                push(meets, found);
+            }
+        };
         for edge in other.edges.iter().copied() {
             let it = &features.edges[edge];
             let [a, b] = it.places(positions);
             let at = foot_on_line([a, b], point);
             let from = point - (a + (b - a) * at);
             let mut inward = it.inward(positions).into_iter().flatten();
-            if (0.0..=1.0).contains(&at) && is_near(from) && inward.all(|along| from.dot(along) <= 0.0) {
-                push(Meets::Edge { corner, edge }, found);
+            if (0.0..=1.0).contains(&at) && inward.all(|along| from.dot(along) <= 0.0) {
+                take(from, Meets::Edge { corner, edge }, found);
             }
         }
         for other in other.corners.iter().copied() {
-            let place = positions[features.corners[other].row as usize];
-            let from = point - place;
+            let from = point - self.place(other);
             let mut neighbours = features.neighbours_of(other);
-            if is_near(from) && neighbours.all(|row| from.dot(positions[row] - place) <= 0.0) {
-                push(Meets::Corner { corner, other }, found);
+            if neighbours.all(|row| from.dot(positions[row] - self.place(other)) <= 0.0) {
+                take(from, Meets::Corner { corner, other }, found);
             }
         }
     }
 
     /// Whether two edges cross where both stand out, and the direction that parts them leads out of the one and of the other.
     fn edges_cross(&self, one: usize, other: usize) -> bool {
-        let (features, positions) = (self.features, self.positions);
+        let (features, positions) = (self.features, self.at.positions);
         let edges = [one, other].map(|edge| &features.edges[edge]);
         let lines = edges.map(|edge| edge.places(positions));
         let [along, across] = lines.map(|[a, b]| b - a);
@@ -269,15 +300,17 @@ impl Met<'_> {
         if !feet_of_lines(lines[0], lines[1]).is_some_and(|feet| feet.into_iter().all(is_between)) {
             return false;
         }
-        let meeting = features.meeting(Meets::Edges { one, other }, positions);
+        let meets = Meets::Edges { one, other };
+        let meeting = features.meeting(meets, positions);
         let Some(normal) = meeting.normal.filter(|_| meeting.distance.abs() < self.reach) else {
             return false;
         };
-        edges.into_iter().zip([-normal, normal]).all(|(edge, out)| {
+        let leads_out = edges.into_iter().zip([-normal, normal]).all(|(edge, out)| {
             let [Some(left), Some(right)] = edge.inward(positions) else { return false };
             // what leads out of one triangle beside it, and along the other away from it
             let stands_out = edge.outward(positions).dot(left) < -FLAT;
-            stands_out && out.dot(left) <= TILT && out.dot(right) <= TILT
-        })
+            stands_out && out.dot(left) <= self.tilt && out.dot(right) <= self.tilt
+        });
+        leads_out && (meeting.distance >= -self.touch() || self.came_from_outside(meets))
     }
 }

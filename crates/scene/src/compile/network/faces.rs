@@ -116,11 +116,7 @@ impl Making<'_> {
                 });
             }
         }
-        let faced = bodies.iter().filter(|body| matches!(body, Polyhedron::Faces(_))).count();
-        if bodies.len() < 2 || faced == 0 {
-            let message = format!("{} bodies, {faced} of them with faces: nothing meets", bodies.len());
-            return self.refuse(Code::Conflict, message, "at least two bodies, and faces of one of them");
-        }
+        let count = bodies.len();
         let description = PolyhedraDescription {
             name,
             bodies,
@@ -129,14 +125,23 @@ impl Making<'_> {
             detection: self.draft.spec.world.detection,
         };
         let polyhedra = Polyhedra::new(description, &self.rows_at(points));
+        if !polyhedra.may_meet() {
+            let message = format!("none of the {count} bodies meets another");
+            return self.refuse(
+                Code::Conflict,
+                message,
+                "at least two bodies that share no corners, and faces of one of them",
+            );
+        }
         let places = start::places(self.body.spec.start.as_ref(), points);
         let scale =
             places.iter().flat_map(|place| place.to_array()).fold(0.0_f64, |most, x| most.max(x.abs()));
         if let Some(entered) = polyhedra.entered(&self.rows_at(&places), HOLDS * scale) {
             let [one, other] = entered.bodies.map(|body| names[body]);
             let mass = entered.row as usize - self.body.rows.start;
-            let message =
-                format!("`{one}` begins within `{other}`, by its mass {mass} or an edge from there");
+            let message = format!(
+                "`{one}` begins within `{other}`, by mass {mass} of the network or an edge from there"
+            );
             return self.refuse(Code::Conflict, message, "bodies that begin apart, or touch");
         }
         Some(polyhedra)

@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 
 /// Masses nearer to a line or a plane through others than this share of how far they are apart are in it.
-const APART: f64 = 1e-6;
+const APART: f64 = 1e-4;
 
 /// As many rods as hold masses that rest at places: `3 n − 6`, between four that are far from each other, and from each other one to three of these
 /// that it is farthest from the plane of. `None` where all are in a plane, or in a line of more than two: rods do not hold what leaves that.
