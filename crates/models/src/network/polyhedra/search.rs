@@ -134,7 +134,7 @@ impl Search {
         at: &Configuration,
         found: &mut Vec<Pair>,
     ) {
-        let reach = bodies.iter().map(|body| self.boxes[*body].reach).sum();
+        let reach: f64 = bodies.iter().map(|body| self.boxes[*body].reach).sum();
         let size = bodies.iter().map(|body| features.bodies[*body].size).fold(f64::INFINITY, f64::min);
         let way = reach - SKIN * bodies.iter().map(|body| features.bodies[*body].size).sum::<f64>();
         let tilt = (TOUCHES + way / size).clamp(TOUCHES, TILT);
