@@ -189,7 +189,7 @@ fn what_cannot_be_planned_is_named() {
         (
             "time = 2",
             "from = 0\nuntil = 60",
-            "`plan.keys` is 6000 and 3000 commands that are sought at once; expected at most 2000",
+            "`plan.keys` is 6000 keys and 3000 commands that are sought at once; expected at most 2000",
         ),
         ("kind =", "start = \"none.csv\"\nkind =", "none.csv: No such file"),
         ("kind =", "start = \"motion.toml\"\nkind =", "motion.toml` is without a column `cart.drive [N]`"),
