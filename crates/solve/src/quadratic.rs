@@ -172,8 +172,8 @@ impl Scaled {
         let drawn = self.drawn(&near.multipliers);
         let is_free: Vec<bool> =
             drawn.iter().zip(&self.bounds).map(|(drawn, [low, high])| low < drawn && drawn < high).collect();
-        let held = near.values.iter().zip(&drawn).zip(&self.bounds);
-        let mut values: Vec<f64> = held.map(|((_, drawn), [low, high])| drawn.clamp(*low, *high)).collect();
+        let held = drawn.iter().zip(&self.bounds);
+        let mut values: Vec<f64> = held.map(|(drawn, [low, high])| drawn.clamp(*low, *high)).collect();
         // rows that hold, with the side that they hold at; others have no multiplier, or the whole price
         let mut multipliers = Vec::with_capacity(self.rows.len());
         let mut holding: Vec<(usize, f64)> = Vec::new();

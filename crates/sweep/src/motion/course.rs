@@ -274,7 +274,7 @@ impl Course {
     }
 }
 
-fn failed(message: impl ToString) -> SweepError {
+pub(super) fn failed(message: impl ToString) -> SweepError {
     SweepError::Failed { settings: "these commands".to_owned(), message: message.to_string() }
 }
 

@@ -102,9 +102,7 @@ impl Regulator {
     /// Controls read positions and velocities of masses as they stand between periods: what State holds has to be that.
     fn refuse_what_is_not_read(&mut self, now: &Trajectory) -> Result<(), SweepError> {
         for state in now.states.iter().take(2) {
-            let failed =
-                |message: String| SweepError::Failed { settings: "these commands".to_owned(), message };
-            self.course.world.resume(state.clone()).map_err(|error| failed(error.to_string()))?;
+            self.course.world.resume(state.clone()).map_err(super::course::failed)?;
             for (index, system) in state.systems.iter().enumerate() {
                 let rows = self.course.world.rows(index);
                 if rows.positions != system.q || rows.velocities != system.v {

@@ -137,7 +137,7 @@ impl Features {
     }
 
     /// Whether two bodies, in ascending order, share corners.
-    pub fn are_joined(&self, one: usize, other: usize) -> bool {
+    fn are_joined(&self, one: usize, other: usize) -> bool {
         self.joined.binary_search(&[one as u32, other as u32]).is_ok()
     }
 

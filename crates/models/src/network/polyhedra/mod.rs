@@ -79,7 +79,7 @@ impl Polyhedra {
         }
     }
 
-    /// The bodies of what meets, and whether each is of balls; `None` where there is no such feature.
+    /// The bodies of what meets; `None` where there is no such feature.
     fn bodies(&self, meets: Meets) -> Option<[usize; 2]> {
         let Features { corners, faces, edges, .. } = &self.features;
         let corner = |place: usize| {
