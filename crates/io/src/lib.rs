@@ -29,7 +29,7 @@ mod vtk;
 mod wav;
 
 pub use beside::{may_be_written, write_file};
-pub use csv::{Column, csv_cell, write_csv};
+pub use csv::{Column, NumberTable, csv_cell, csv_cells, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{

@@ -17,6 +17,7 @@ mod measure;
 mod modules;
 mod overrides;
 mod parameters;
+mod plan_file;
 mod reader;
 mod scene;
 mod schema;
@@ -30,6 +31,7 @@ pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use ground::grounds;
 pub use measure::{ContourInfo, Measurement, ProbeInfo, power_from_outside};
 pub use modules::MODULES;
+pub use plan_file::{PlanFault, PlanFile};
 pub use scene::{
     BodyInfo, CarriedMarks, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, MarksInfo, Planned,
     PlannedControl, ReducedInfo, Scene, SkinInfo, read_again, read_file, read_file_to_plan,

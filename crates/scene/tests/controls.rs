@@ -321,8 +321,11 @@ fn plans_are_read() {
         ("", "no column is of `n.drive`"),
         ("time [s],n.driven [N]\n0,1\n", "no column is of `n.drive`"),
         (head, "it has no rows"),
-        (&format!("{head}0,5\n"), "line 2 is `0,5`"),
-        (&format!("{head}0,5,4\n0.01,5,NaN\n"), "line 3 is `0.01,5,NaN`"),
+        (&format!("{head}0,5\n"), "line 2: the row is \"0,5\""),
+        (&format!("{head}0,5,4\n0.01,5,NaN\n"), "line 3: the row is \"0.01,5,NaN\""),
+        (&format!("{head}0,x,5,4\n"), "line 2: the row is \"0,x,5,4\""),
+        ("n.drive [N]\n4\n", "no column is of `n.drive`"),
+        ("time [ms],n.drive [N]\n0,4\n", "a column is `time [ms]`"),
         (&format!("{head}0,5,4\n0.02,5,4\n"), "line 3 is of 0.02 s"),
     ] {
         let message = read(plan).err().expect("a refusal").to_string();
@@ -412,8 +415,8 @@ fn tables_are_read() {
         ("", "columns x, v, `n.drive [N]` and `value [s]`"),
         ("v,x,n.drive [N]\n0,0,1\n", "its columns are `v, x, n.drive`"),
         (head, "0 rows for 0 states"),
-        (&format!("{head}0,0,1\n"), "line 2 is `0,0,1`"),
-        (&format!("{head}0,0,inf,2\n"), "line 2 is `0,0,inf,2`"),
+        (&format!("{head}0,0,1\n"), "line 2: the row is \"0,0,1\""),
+        (&format!("{head}0,0,inf,2\n"), "line 2: the row is \"0,0,inf,2\""),
         (&format!("{head}0,0,1,2\n1,4,1,2\n"), "line 3 is out of its place"),
         (&format!("{head}0,4,1,2\n0,0,1,2\n"), "line 2 is out of its place"),
     ] {

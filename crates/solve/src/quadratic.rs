@@ -40,6 +40,14 @@ pub struct Row {
     pub price: f64,
 }
 
+/// Why there is no least.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoLeast {
+    /// Numbers are not finite, or so unlike that no step comes near it.
+    Unsolved,
+    Interrupted,
+}
+
 /// The least of a program.
 #[derive(Clone, Debug)]
 pub struct Least {
@@ -52,24 +60,27 @@ pub struct Least {
 }
 
 impl QuadraticProgram {
-    /// The least; `None` where there are numbers that are not finite, or so unlike that no step comes near it.
-    pub fn solve(&self) -> Option<Least> {
-        let scaled = Scaled::of(self)?;
-        let mut least = interior::least(&scaled)?;
+    /// The least, looked for until `is_wished` says to stop, which is asked for each row of each system.
+    ///
+    /// # Errors
+    /// It cannot be solved, or was interrupted.
+    pub fn solve(&self, is_wished: &dyn Fn() -> bool) -> Result<Least, NoLeast> {
+        let scaled = Scaled::of(self).ok_or(NoLeast::Unsolved)?;
+        let mut least = interior::least(&scaled, is_wished)?;
         // twice: what the first exchanges of bounds shows what the second has to
         for _ in 0..2 {
-            match scaled.polished(&least) {
+            match scaled.polished(&least, is_wished)? {
                 Some(better) if better.residual <= least.residual => least = better,
                 _ => break,
             }
         }
         if least.residual > UNSOLVED {
-            return None;
+            return Err(NoLeast::Unsolved);
         }
         let values = least.values.iter().zip(&scaled.sizes).map(|(value, size)| value * size);
         let values = values.zip(&self.bounds).map(|(value, [low, high])| value.clamp(*low, *high));
         let multipliers = least.multipliers.iter().zip(&scaled.prices);
-        Some(Least {
+        Ok(Least {
             values: values.collect(),
             multipliers: multipliers.map(|(multiplier, unit)| multiplier * unit).collect(),
             residual: least.residual,
@@ -168,7 +179,7 @@ impl Scaled {
     }
 
     /// The answer where the same bounds and bands hold, to rounding: `x = clamp(Gᵀμ − c)`, with what holds told by `x` and `μ`.
-    fn polished(&self, near: &Least) -> Option<Least> {
+    fn polished(&self, near: &Least, is_wished: &dyn Fn() -> bool) -> Result<Option<Least>, NoLeast> {
         let drawn = self.drawn(&near.multipliers);
         let is_free: Vec<bool> =
             drawn.iter().zip(&self.bounds).map(|(drawn, [low, high])| low < drawn && drawn < high).collect();
@@ -209,7 +220,7 @@ impl Scaled {
             }
         };
         set(&mut values, &base);
-        let factor = Factor::of(of_free.len(), |i, j| dot(&of_free[i], &of_free[j]));
+        let factor = Factor::of(of_free.len(), |i, j| dot(&of_free[i], &of_free[j]), is_wished)?;
         // again and again: each leaves what rounding of the one before has left
         for _ in 0..3 {
             let short = holding.iter().map(|(at, side)| side - dot(&self.rows[*at].slopes, &values));
@@ -222,7 +233,7 @@ impl Scaled {
             set(&mut values, &drawn);
         }
         let is_finite = values.iter().chain(&multipliers).all(|number| number.is_finite());
-        is_finite.then(|| Least { residual: self.residual(&values, &multipliers), values, multipliers })
+        Ok(is_finite.then(|| Least { residual: self.residual(&values, &multipliers), values, multipliers }))
     }
 }
 

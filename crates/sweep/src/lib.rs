@@ -21,7 +21,7 @@ pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
 pub use motion::{
-    Attempt, Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner, Spacetime, Watch, When, Windows,
+    Attempt, Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner, Seen, Spacetime, Watch, When, Windows,
     with_unit,
 };
 pub use state_space::{FoundTable, Span, Tabulation, Tabulator};
@@ -38,6 +38,10 @@ pub enum SweepError {
     Syntax { path: PathBuf, message: String },
     #[error("`{path}` is {value}; expected {expected}")]
     Value { path: String, value: String, expected: String },
+    #[error("{}: {found}; expected {expected}", .path.display())]
+    Plan { path: PathBuf, found: String, expected: String },
+    #[error("none of {count} starts comes to a motion that meets its keys: {messages}")]
+    Starts { count: usize, messages: String },
     #[error("run {run} ({settings}): {message}")]
     Scene { run: usize, settings: String, message: String },
     #[error("with {settings}: {message}")]

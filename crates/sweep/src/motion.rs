@@ -9,7 +9,6 @@
 
 mod course;
 mod linear_quadratic;
-mod plan_file;
 mod read;
 mod riccati;
 mod slopes;
@@ -202,8 +201,19 @@ pub struct Planner<'a> {
     pub stop: &'a Interruption,
 }
 
-/// Told of each step: iterations, what it costs, and the greatest miss of a key.
-pub type Watch<'a> = &'a (dyn Fn(usize, f64, f64) + Sync);
+/// What a search has come to.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    pub iterations: usize,
+    pub cost: f64,
+    /// The greatest miss of a key.
+    pub miss: f64,
+    /// Of several starts those that are over, and how many there are.
+    pub starts: Option<[usize; 2]>,
+}
+
+/// Told of each step, and of each of several starts that is over.
+pub type Watch<'a> = &'a (dyn Fn(Seen) + Sync);
 
 impl Planner<'_> {
     /// Looks for the motion. `None`: interrupted.

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use souple_io::csv_cells;
 use toml::{Table, Value};
 
 use crate::SweepError;
@@ -262,7 +263,7 @@ fn rows(path: &Path, text: &str) -> Result<Vec<Plan>, SweepError> {
     let (first, head) =
         lines.next().ok_or_else(|| SweepError::value(place(0), "empty", "paths with commas"))?;
     let cells_of = |number: usize, line: &str| {
-        cells(line)
+        csv_cells(line)
             .ok_or_else(|| SweepError::value(place(number), "a quote that is not closed", "quotes in pairs"))
     };
     let paths = cells_of(first, head)?;
@@ -290,25 +291,6 @@ fn rows(path: &Path, text: &str) -> Result<Vec<Plan>, SweepError> {
         return Err(SweepError::value(path.display().to_string(), found, format!("1 to {MOST_RUNS} runs")));
     }
     Ok(plans)
-}
-
-/// What stands between commas; in quotes commas may stand, and two quotes for one. `None` where a quote is not closed.
-fn cells(line: &str) -> Option<Vec<String>> {
-    let (mut all, mut cell, mut quoted) = (Vec::new(), String::new(), false);
-    let mut characters = line.trim().chars().peekable();
-    while let Some(character) = characters.next() {
-        match character {
-            '"' if quoted && characters.peek() == Some(&'"') => {
-                characters.next();
-                cell.push('"');
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => all.push(std::mem::take(&mut cell).trim().to_owned()),
-            other => cell.push(other),
-        }
-    }
-    all.push(cell.trim().to_owned());
-    (!quoted).then_some(all)
 }
 
 fn value_of(text: &str) -> Value {

@@ -19,7 +19,7 @@ pub fn plan(scene: &str, changes: &[(&str, &str)]) -> Result<FoundMotion, SweepE
     }
     let study = Study::parse(&path, &text, |_| unreachable!("a plan reads no table"))?;
     let (motion, stop) = (study.motion.as_ref().expect("a plan"), Interruption::default());
-    let found = Planner { study: &study, motion, count: 2, stop: &stop }.run(&|_, _, _| {})?;
+    let found = Planner { study: &study, motion, count: 2, stop: &stop }.run(&|_| {})?;
     Ok(found.expect("not interrupted"))
 }
 
@@ -45,7 +45,7 @@ fn plan_of_changed(
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
     let study = Study::parse(&folder.join("motion.toml"), &text, |_| unreachable!("a plan reads no table"))?;
     let (motion, stop) = (study.motion.as_ref().expect("a plan"), Interruption::default());
-    let found = Planner { study: &study, motion, count, stop: &stop }.run(&|_, _, _| {})?;
+    let found = Planner { study: &study, motion, count, stop: &stop }.run(&|_| {})?;
     Ok(found.expect("not interrupted"))
 }
 
@@ -101,7 +101,7 @@ fn plans_are_interrupted() {
     let (study, stop) = (Study::read(&study("planned_cart")).unwrap(), Interruption::default());
     stop.wish();
     let motion = study.motion.as_ref().expect("a plan");
-    let found = Planner { study: &study, motion, count: 1, stop: &stop }.run(&|_, _, _| {});
+    let found = Planner { study: &study, motion, count: 1, stop: &stop }.run(&|_| {});
     assert!(found.unwrap().is_none());
 }
 
@@ -192,7 +192,18 @@ fn what_cannot_be_planned_is_named() {
             "`plan.keys` is 6000 keys and 3000 commands that are sought at once; expected at most 2000",
         ),
         ("kind =", "start = \"none.csv\"\nkind =", "none.csv: No such file"),
-        ("kind =", "start = \"motion.toml\"\nkind =", "motion.toml` is without a column `cart.drive [N]`"),
+        ("kind =", "start = \"none.csv\"\nkind =", "expected a plan, as `souple sweep` writes it"),
+        ("kind =", "start = \"motion.toml\"\nkind =", "motion.toml: line "),
+        (
+            "kind =",
+            "windows = { length = 0.09, overlap = 0 }\nkind =",
+            "`plan.windows.length` is 0.09; expected a whole number of periods of 0.02 s",
+        ),
+        (
+            "kind =",
+            "windows = { length = 0.1, overlap = 0.03 }\nkind =",
+            "`plan.windows.overlap` is 0.03; expected a whole number of periods of 0.02 s",
+        ),
         (
             "kind =",
             "weights = { \"cart.push\" = 2 }\nkind =",
@@ -328,6 +339,13 @@ fn several_starts_find_the_better_of_two() {
     let answers = several.answers();
     assert_eq!(answers.len(), 2, "{answers:?}");
     assert!(answers[0].1 + answers[1].1 == 6 && answers[0].1 > 0 && (answers[1].0 / late - 1.0).abs() < 1e-6);
+    // what comes to nothing is told once, with how many starts came to it
+    let far = "kind = \"spacetime\"\nstarts = 3\n[[plan.keys]]\ntime = 1\nprobe = \"place\"\nvalue = 100";
+    let none = plan("bounded_cart", &[("kind = \"spacetime\"", far)]).err().expect("a refusal").to_string();
+    assert!(
+        none.contains("none of 3 starts comes to a motion that meets its keys: 3 starts: no motion"),
+        "{none}"
+    );
     // the same bits at any number of jobs, and others of another seed
     let at_once = gated("starts = 6", 3);
     assert_eq!((at_once.commands, at_once.attempts), (several.commands, several.attempts.clone()));

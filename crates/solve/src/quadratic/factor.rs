@@ -1,6 +1,6 @@
 //! Dense symmetric systems, of which some rows may say what others do.
 
-use super::dot;
+use super::{NoLeast, dot};
 
 /// A pivot below this share of what the row's own entry was belongs to a row that others say already.
 const PIVOT: f64 = 1e-15;
@@ -11,19 +11,28 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    pub fn of(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let mut rows: Vec<Vec<f64>> = (0..count).map(|i| (0..=i).map(|j| entry(i, j)).collect()).collect();
+    /// # Errors
+    /// It was interrupted.
+    pub fn of(
+        count: usize,
+        entry: impl Fn(usize, usize) -> f64,
+        is_wished: &dyn Fn() -> bool,
+    ) -> Result<Self, NoLeast> {
+        let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
         for i in 0..count {
-            let (above, rest) = rows.split_at_mut(i);
-            let row = &mut rest[0];
+            if is_wished() {
+                return Err(NoLeast::Interrupted);
+            }
+            let mut row: Vec<f64> = (0..=i).map(|j| entry(i, j)).collect();
             let own = row[i];
-            for (j, of) in above.iter().enumerate() {
+            for (j, of) in rows.iter().enumerate() {
                 row[j] = (row[j] - dot(&row[..j], &of[..j])) / of[j];
             }
             let pivot = row[i] - dot(&row[..i], &row[..i]);
             row[i] = if pivot > PIVOT * own { pivot.sqrt() } else { f64::INFINITY };
+            rows.push(row);
         }
-        Self { rows }
+        Ok(Self { rows })
     }
 
     pub fn solve(&self, right: &mut [f64]) {

@@ -1,7 +1,7 @@
 //! The interior-point method: steps towards where conditions of a least hold, within all bounds.
 
 use super::factor::Factor;
-use super::{Least, Row, Scaled, dot};
+use super::{Least, NoLeast, Row, Scaled, dot};
 
 /// Iterations at most; twenty to forty are usual.
 const MOST_ITERATIONS: usize = 200;
@@ -13,7 +13,7 @@ const PATIENCE: usize = 40;
 const SHORT: f64 = 0.995;
 
 /// The least, as nearly as rounding lets these steps come to it.
-pub(super) fn least(scaled: &Scaled) -> Option<Least> {
+pub(super) fn least(scaled: &Scaled, is_wished: &dyn Fn() -> bool) -> Result<Least, NoLeast> {
     let mut point = Point::start(scaled);
     let (mut best, mut since): (Option<Least>, usize) = (None, 0);
     for _ in 0..MOST_ITERATIONS {
@@ -25,11 +25,11 @@ pub(super) fn least(scaled: &Scaled) -> Option<Least> {
             (best, since) = (Some(Least { values, multipliers, residual }), 0);
         }
         // where rounding is all that is left it comes no nearer
-        if residual <= TOLERANCE || since > PATIENCE || !point.step(scaled) {
+        if residual <= TOLERANCE || since > PATIENCE || !point.step(scaled, is_wished)? {
             break;
         }
     }
-    best.filter(|best| best.residual.is_finite())
+    best.filter(|best| best.residual.is_finite()).ok_or(NoLeast::Unsolved)
 }
 
 /// A variable within bounds, with what is paid at each of them.
@@ -173,11 +173,11 @@ impl Point {
     }
 
     /// Predictor, corrector, and as far as bounds let it; `false` where it gets nowhere.
-    fn step(&mut self, scaled: &Scaled) -> bool {
+    fn step(&mut self, scaled: &Scaled, is_wished: &dyn Fn() -> bool) -> Result<bool, NoLeast> {
         let misses = self.misses(scaled);
         let gap = self.gap();
         let inverse: Vec<f64> = self.variables.iter().map(|variable| 1.0 / variable.stiffness()).collect();
-        let factor = self.factor(scaled, &inverse);
+        let factor = self.factor(scaled, &inverse, is_wished)?;
         let none = vec![[0.0; 2]; self.variables.len()];
         let predicted = self.change(scaled, &misses, &factor, &inverse, &none);
         let centre = (self.gap_after(&predicted, self.share(&predicted)) / gap).powi(3) * gap;
@@ -194,7 +194,7 @@ impl Point {
         let is_finite =
             corrected.values.iter().chain(&corrected.multipliers).all(|number| number.is_finite());
         if !is_finite || share < 1e-12 {
-            return false;
+            return Ok(false);
         }
         for (variable, (by, paid)) in
             self.variables.iter_mut().zip(corrected.values.iter().zip(&corrected.paid))
@@ -206,24 +206,30 @@ impl Point {
             .iter_mut()
             .zip(&corrected.multipliers)
             .for_each(|(multiplier, by)| *multiplier += share * by);
-        true
+        Ok(true)
     }
 
     /// `A D⁻¹ Aᵀ`
-    fn factor(&self, scaled: &Scaled, inverse: &[f64]) -> Factor {
+    fn factor(
+        &self,
+        scaled: &Scaled,
+        inverse: &[f64],
+        is_wished: &dyn Fn() -> bool,
+    ) -> Result<Factor, NoLeast> {
         let (n, m) = (scaled.gradient.len(), scaled.rows.len());
         let soft = |row: &Row| -> Vec<f64> {
             row.slopes.iter().zip(inverse).map(|(slope, inverse)| slope * inverse).collect()
         };
         let soft: Vec<Vec<f64>> = scaled.rows.iter().map(soft).collect();
-        Factor::of(m, |i, j| {
+        let entry = |i: usize, j: usize| {
             let own = if i == j {
                 inverse[n + i] + inverse[n + m + i] + self.within[i].map_or(0.0, |at| inverse[at])
             } else {
                 0.0
             };
             dot(&soft[i], &scaled.rows[j].slopes) + own
-        })
+        };
+        Factor::of(m, entry, is_wished)
     }
 
     /// `D Δv − Aᵀ Δy = f`, `A Δv = b − A v`, with `paid · room = aim` in the end.

@@ -10,6 +10,10 @@ fn random(seed: &mut u64) -> f64 {
     (mixed ^ (mixed >> 31)) as f64 / u64::MAX as f64 * 2.0 - 1.0
 }
 
+fn never() -> bool {
+    false
+}
+
 const OPEN: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 fn row(slopes: &[f64], band: [f64; 2], price: f64) -> Row {
@@ -25,7 +29,7 @@ fn one_row_is_met_at_the_least() {
         bounds: vec![OPEN; 3],
         rows: vec![row(&[1.0, 2.0, -5.0], [7.0, 7.0], 1e6)],
     };
-    let least = program.solve().unwrap();
+    let least = program.solve(&never).unwrap();
     let mu = 7.0 / (1.0 + 1.0 + 0.25);
     for (value, exact) in least.values.iter().zip([mu, mu / 2.0, -mu / 20.0]) {
         assert!((value - exact).abs() < 1e-13, "{:?}", least);
@@ -43,7 +47,7 @@ fn bounds_cut_what_a_row_asks_for() {
         bounds: vec![[-1.0, 1.0]; 50],
         rows: vec![row(&slopes, [550.0, f64::INFINITY], 1e6), row(&[1.0; 50], [0.0, 0.0], 1e6)],
     };
-    let least = program.solve().unwrap();
+    let least = program.solve(&never).unwrap();
     let at = |mu: f64| slopes.iter().map(|g| g * (mu * g).clamp(-1.0, 1.0)).sum::<f64>();
     let (mut low, mut high) = (0.0, 10.0);
     for _ in 0..200 {
@@ -76,9 +80,9 @@ fn wide_bands_change_nothing() {
             rows,
         };
         let scaled = Scaled::of(&program).unwrap();
-        let interior = interior::least(&scaled).unwrap();
+        let interior = interior::least(&scaled, &never).unwrap();
         assert!(interior.residual < 1e-8, "{width}: {}", interior.residual);
-        let least = program.solve().unwrap();
+        let least = program.solve(&never).unwrap();
         for (n, value) in least.values.iter().enumerate() {
             let exact = gain * (49.5 - n as f64);
             assert!((value - exact).abs() < 1e-10 * gain * 49.5, "{width}: {n}: {value} {exact}");
@@ -95,16 +99,16 @@ fn rows_that_contradict_are_missed_by_the_least() {
         bounds: vec![[-1.0, 1.0]; 2],
         rows: vec![row(&[1.0, 1.0], [5.0, 5.0], 1e5)],
     };
-    let least = program.solve().unwrap();
+    let least = program.solve(&never).unwrap();
     assert_eq!(least.values, [1.0, 1.0]);
     assert!((least.multipliers[0] / 1e5 - 1.0).abs() < 1e-9, "{least:?}");
     // the same twice with other values, the second at twice the price
     program.rows = vec![row(&[1.0, 1.0], [0.5, 0.5], 1e5), row(&[1.0, 1.0], [1.5, 1.5], 2e5)];
-    let least = program.solve().unwrap();
+    let least = program.solve(&never).unwrap();
     assert!(least.values.iter().all(|value| (value - 0.75).abs() < 1e-9), "{least:?}");
     // a price below what it is worth, ½ x² + 0.3 (1 − x)
     program.rows = vec![row(&[1.0, 0.0], [1.0, 1.0], 0.3)];
-    let least = program.solve().unwrap();
+    let least = program.solve(&never).unwrap();
     assert!((least.values[0] - 0.3).abs() < 1e-12, "{least:?}");
 }
 
@@ -119,7 +123,7 @@ fn bands_hold_where_they_are_reached() {
             bounds: vec![[-0.4, 0.4]; 30],
             rows: vec![row(&[1.0; 30], [3.0, 3.0], 1e6), row(&slopes, band, 1e6)],
         }
-        .solve()
+        .solve(&never)
         .unwrap()
     };
     let close = |a: &Least, b: &Least| a.values.iter().zip(&b.values).all(|(a, b)| (a - b).abs() < 1e-12);
@@ -166,7 +170,7 @@ fn conditions_of_a_least_are_met() {
                 })
                 .collect(),
         };
-        let least = program.solve().unwrap();
+        let least = program.solve(&never).unwrap();
         // rounding of prices of up to 1e8
         assert!(least.residual < 1e-8, "{case}: {}", least.residual);
         assert!(
@@ -187,5 +191,21 @@ fn what_is_no_number_has_no_least() {
         bounds: vec![OPEN],
         rows: Vec::new(),
     };
-    assert!(program.solve().is_none());
+    assert_eq!(program.solve(&never).err(), Some(NoLeast::Unsolved));
+}
+
+/// It ends where that is wished within a system.
+#[test]
+fn it_ends_where_that_is_wished() {
+    let slopes: Vec<Vec<f64>> = (0..20).map(|i| (0..30).map(|j| f64::from((i * j) % 7)).collect()).collect();
+    let program = QuadraticProgram {
+        curvature: vec![1.0; 30],
+        gradient: vec![0.0; 30],
+        bounds: vec![[-1.0, 1.0]; 30],
+        rows: slopes.iter().map(|slopes| row(slopes, [1.0, 2.0], 10.0)).collect(),
+    };
+    let asked = std::cell::Cell::new(0);
+    let wish = || asked.replace(asked.get() + 1) >= 25;
+    assert_eq!(program.solve(&wish).err(), Some(NoLeast::Interrupted));
+    assert_eq!(asked.get(), 26);
 }

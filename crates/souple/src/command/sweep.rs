@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
-    Database, Ending, Fit, FoundMotion, KeyState, Kind, Motion, Planner, Progress, Search, Study, SweepError,
-    Tabulation, Tabulator, Unknown, When, Workers, fingerprints, graphs, sweep as make_runs, table_of,
-    with_unit,
+    Database, Ending, Fit, FoundMotion, KeyState, Kind, Motion, Planner, Progress, Search, Seen, Study,
+    SweepError, Tabulation, Tabulator, Unknown, When, Workers, fingerprints, graphs, sweep as make_runs,
+    table_of, with_unit,
 };
 use souple_table::counted;
 
@@ -46,12 +46,14 @@ impl From<SweepError> for Refusal {
             SweepError::Read { .. } | SweepError::Syntax { .. } => {
                 Self::request("study", "", "a study: TOML with `scene` and `vary`, `fit` or `plan`", message)
             }
+            SweepError::Plan { found, expected, .. } => Self::request("plan", found, expected, message),
             SweepError::Scene { settings, .. } => {
                 Self::request("study", settings, "values that the scene takes", message)
             }
-            SweepError::Failed { .. } | SweepError::Beyond { .. } | SweepError::Unmet { .. } => {
-                Self::work("run", message)
-            }
+            SweepError::Failed { .. }
+            | SweepError::Beyond { .. }
+            | SweepError::Unmet { .. }
+            | SweepError::Starts { .. } => Self::work("run", message),
             SweepError::OtherStudy { found, .. } => {
                 Self::request("database", found, "a file of this study", message)
             }
@@ -233,8 +235,10 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let interruption = interruption::heed();
     let meter = Meter::new("iterations", arguments.quiet);
-    let watch = |iterations: usize, cost: f64, miss: f64| {
-        meter.show(iterations as u64, motion.iterations as u64, format!("cost {cost:.4e}, miss {miss:.1e}"));
+    let watch = |seen: Seen| {
+        let of = seen.starts.map_or(String::new(), |[over, all]| format!("start {over} of {all} over, "));
+        let message = format!("{of}cost {:.4e}, miss {:.1e}", seen.cost, seen.miss);
+        meter.show(seen.iterations as u64, motion.iterations as u64, message);
     };
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
     let found = Planner { study, motion, count, stop: &interruption }.run(&watch)?;
@@ -253,10 +257,14 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     if found.ending == Ending::Converged {
         return Ok(End::Done);
     }
-    print_note(format_args!(
-        "warning: it ended after {}, at commands that keys or the least effort are not reached with",
-        counted(found.iterations as u64, "iteration")
-    ));
+    let iterations = counted(found.iterations as u64, "iteration");
+    let how = match found.ending {
+        Ending::Stalled => format!("no step came nearer after {iterations}"),
+        _ => {
+            format!("it was still on its way after {iterations}, as many as there may be (`plan.iterations`)")
+        }
+    };
+    print_note(format_args!("warning: {how}: keys or the least effort are not reached"));
     Ok(End::Failed)
 }
 
@@ -319,10 +327,8 @@ fn print_plan(motion: &Motion, found: &FoundMotion, out: &Path) {
         let of = counted(found.attempts.len() as u64, "start");
         print_line(format_args!("{count} of {of} came to {}", with_unit(&format!("{cost:.6e}"), unit)));
     }
-    let without = found.attempts.iter().filter(|attempt| attempt.cost.is_none()).count();
-    if without > 0 {
-        let of = counted(found.attempts.len() as u64, "start");
-        print_line(format_args!("{without} of {of} came to no motion that meets all keys"));
+    for message in found.without_answer() {
+        print_line(format_args!("without an answer {message}"));
     }
     print_line(format_args!("  {}", out.display()));
 }

@@ -168,6 +168,10 @@ impl Course {
             .sum()
     }
 
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_wished()
+    }
+
     /// Keys that are the end of `period` periods, by their numbers.
     pub fn keys_at(&self, period: usize) -> Vec<(usize, Measured)> {
         let keys = self.keys.iter().enumerate().filter(|(_, key)| key.period == period);

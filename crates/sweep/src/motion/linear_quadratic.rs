@@ -10,7 +10,7 @@ use souple_engine::State;
 use super::course::{Course, Measured, Trajectory};
 use super::riccati::{Law, Matrix, Remainder, Stage};
 use super::slopes::{Coordinate, DIFFERENCE};
-use super::{Cost, DESCENT, FoundMotion, Gain, HALVINGS, Planner, Watch};
+use super::{Cost, DESCENT, FoundMotion, Gain, HALVINGS, Planner, Seen, Watch};
 use crate::SweepError;
 use crate::least_squares::Ending;
 
@@ -58,7 +58,7 @@ pub(super) fn search(
         };
         (now, paid) = (next, next_paid);
         policy = regulator.policy(&now)?;
-        watch(iterations, paid, regulator.greatest_miss(&now));
+        watch(Seen { iterations, cost: paid, miss: regulator.greatest_miss(&now), starts: None });
     }
     regulator.course.refuse_what_remembers(&now)?;
     regulator.course.refuse_what_is_cut(&now)?;

@@ -12,11 +12,11 @@
 
 use std::ops::Range;
 
-use souple_solve::quadratic::{self, QuadraticProgram, beyond};
+use souple_solve::quadratic::{self, NoLeast, QuadraticProgram, beyond};
 
-use super::course::{Course, OFF, Trajectory};
+use super::course::{Course, OFF, Trajectory, failed, whole};
 use super::slopes::DIFFERENCE;
-use super::{DESCENT, FoundMotion, HALVINGS, Motion, Planner, Spacetime, Watch, Windows, with_unit};
+use super::{DESCENT, FoundMotion, HALVINGS, Motion, Planner, Seen, Spacetime, Watch, Windows, with_unit};
 use crate::SweepError;
 use crate::least_squares::{Ending, beside, dot, length};
 
@@ -142,7 +142,8 @@ impl<'a> Search<'a> {
                 ending = Ending::Stalled;
                 break;
             }
-            watch(iterations, self.paid(&now), self.greatest_miss(&now));
+            let (cost, miss) = (self.paid(&now), self.greatest_miss(&now));
+            watch(Seen { iterations, cost, miss, starts: None });
         }
         self.found(now, iterations, ending)
     }
@@ -284,9 +285,12 @@ impl<'a> Search<'a> {
             for (row, length) in program.rows.iter_mut().zip(&linear.lengths) {
                 row.price = price * size / length;
             }
-            program.solve().ok_or_else(|| {
-                let expected = "keys and `weights` of alike sizes, that commands reach";
-                SweepError::value("plan.keys", "a motion with no commands that can be computed", expected)
+            program.solve(&|| self.course.is_stopped()).map_err(|why| match why {
+                NoLeast::Interrupted => failed("it was interrupted"),
+                NoLeast::Unsolved => {
+                    let expected = "keys and `weights` of alike sizes, that commands reach";
+                    SweepError::value("plan.keys", "a motion with no commands that can be computed", expected)
+                }
             })
         };
         let mut least = at_price(PRICES[0])?;
@@ -453,9 +457,12 @@ fn ranges(windows: &Windows, periods: usize, period: f64) -> Result<Vec<Range<us
             each.collect()
         }
         Windows::Sliding { length, overlap } => {
-            let whole = |time: f64| (time / period).round() as usize;
-            let length = whole(*length).clamp(1, periods.max(1));
-            let on = length.saturating_sub(whole(*overlap)).max(1);
+            let length = whole("plan.windows.length", *length, period)?;
+            let overlap = match overlap {
+                0.0 => 0,
+                time => whole("plan.windows.overlap", *time, period)?,
+            };
+            let on = length.saturating_sub(overlap).max(1);
             let mut all = Vec::new();
             for first in (0..periods).step_by(on) {
                 all.push(first..(first + length).min(periods));

@@ -5,11 +5,18 @@
 //! has no bound. Of what they come to the cheapest that meets its keys is kept. Each start has numbers of its own, so that what is found is
 //! the same however many are made at once.
 
-use rayon::prelude::*;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
+use rayon::prelude::*;
+use souple_scene::{PlanFault, PlanFile};
+use souple_solve::quadratic::beyond;
+use souple_table::counted;
+
+use super::course::Course;
 use super::slopes::DIFFERENCE;
 use super::spacetime::Search;
-use super::{Attempt, FoundMotion, Planner, Spacetime, Watch, plan_file};
+use super::{Attempt, FoundMotion, Motion, Planner, Seen, Spacetime, Watch};
 use crate::SweepError;
 use crate::least_squares::Ending;
 
@@ -20,10 +27,9 @@ const SAME: f64 = 1e-3;
 
 pub(super) fn search(planner: &Planner, how: &Spacetime, watch: Watch) -> Result<FoundMotion, SweepError> {
     let mut search = Search::start(planner, how)?;
-    let course = &search.course;
     let start = match &how.start {
         None => search.none(),
-        Some(file) => plan_file::read(file, &course.controls, course.periods, course.world.model().period)?,
+        Some(file) => from_file(file, &search.course)?,
     };
     let first = search.run(start, watch);
     if how.starts == 1 || planner.stop.is_wished() {
@@ -31,12 +37,15 @@ pub(super) fn search(planner: &Planner, how: &Spacetime, watch: Watch) -> Result
     }
     let sizes = sizes(&mut search, &first)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(planner.count.max(1)).build()?;
+    let over = AtomicUsize::new(1);
     let attempt = |index: usize| {
         let mut search = Search::start(planner, how)?;
         let commands = random(how.seed, index, search.course.periods, &sizes);
-        let found = search.run(commands, &|_, _, _| {});
+        let found = search.run(commands, &|_| {});
+        let starts = Some([1 + over.fetch_add(1, Ordering::Relaxed), how.starts]);
         if let Ok(found) = &found {
-            watch(found.iterations, found.cost, 0.0);
+            let (cost, miss) = (found.cost, greatest_miss(planner.motion, found));
+            watch(Seen { iterations: found.iterations, cost, miss, starts });
         }
         found
     };
@@ -46,7 +55,32 @@ pub(super) fn search(planner: &Planner, how: &Spacetime, watch: Watch) -> Result
     best_of(all)
 }
 
-/// The cheapest of what searches found, with what each came to; where none found any, what the first did.
+/// Commands of all controls period by period; those of the last row go on, as in a scene.
+fn from_file(path: &Path, course: &Course) -> Result<Vec<f64>, SweepError> {
+    let refused =
+        |found: String, expected: String| SweepError::Plan { path: path.to_owned(), found, expected };
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| refused(error.to_string(), "a plan, as `souple sweep` writes it".to_owned()))?;
+    let fault = |fault: PlanFault| refused(fault.found, fault.expected);
+    let file = PlanFile::read(&text, course.world.model().period).map_err(fault)?;
+    let commands_of = |name: &str| -> Result<Vec<f64>, SweepError> {
+        let commands: Vec<f64> = file.column(file.column_of_commands(name).map_err(fault)?).collect();
+        Ok((0..course.periods).map(|period| commands[period.min(commands.len() - 1)]).collect())
+    };
+    let each = course.controls.iter().map(|control| commands_of(&control.name));
+    let each = each.collect::<Result<Vec<_>, _>>()?;
+    Ok((0..course.periods).flat_map(|period| each.iter().map(move |commands| commands[period])).collect())
+}
+
+fn greatest_miss(motion: &Motion, found: &FoundMotion) -> f64 {
+    let keys = motion.keys.iter().zip(&found.reached);
+    keys.map(|(key, reached)| beyond(*reached, key.band).abs()).fold(0.0, f64::max)
+}
+
+/// The cheapest of what searches found, with what each came to.
+///
+/// # Errors
+/// None of them found any; what they came to, each once.
 fn best_of(all: Vec<Result<FoundMotion, SweepError>>) -> Result<FoundMotion, SweepError> {
     let attempts: Vec<Attempt> = all.iter().map(attempt).collect();
     let steps = all.iter().flatten().map(|found| found.steps).sum();
@@ -54,11 +88,26 @@ fn best_of(all: Vec<Result<FoundMotion, SweepError>>) -> Result<FoundMotion, Swe
     // the first of those that cost the same
     let best = costs.min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(at, _)| at);
     let best = best.or_else(|| all.iter().position(Result::is_ok)).unwrap_or(0);
-    let found = all
-        .into_iter()
-        .nth(best)
-        .unwrap_or_else(|| Err(SweepError::value("plan.starts", "none", "a whole number above 0")))?;
-    Ok(FoundMotion { attempts, steps, ..found })
+    let count = all.len();
+    match all.into_iter().nth(best) {
+        Some(Ok(found)) => Ok(FoundMotion { attempts, steps, ..found }),
+        _ => Err(SweepError::Starts { count, messages: in_words(&attempts).join("; ") }),
+    }
+}
+
+/// What is wrong with starts that came to nothing, each once, with how many there are of it.
+fn in_words(attempts: &[Attempt]) -> Vec<String> {
+    let mut messages: Vec<(&str, usize)> = Vec::new();
+    for attempt in attempts.iter().filter(|attempt| attempt.cost.is_none()) {
+        match messages.iter_mut().find(|(message, _)| *message == attempt.message) {
+            Some((_, count)) => *count += 1,
+            None => messages.push((&attempt.message, 1)),
+        }
+    }
+    messages
+        .iter()
+        .map(|(message, count)| format!("{}: {message}", counted(*count as u64, "start")))
+        .collect()
 }
 
 fn attempt(found: &Result<FoundMotion, SweepError>) -> Attempt {
@@ -69,7 +118,7 @@ fn attempt(found: &Result<FoundMotion, SweepError>) -> Attempt {
         Ok(found) => {
             let message = match found.ending {
                 Ending::Stalled => "no step came nearer".to_owned(),
-                _ => format!("it was not there after {} iterations", found.iterations),
+                _ => format!("still on its way after {} iterations", found.iterations),
             };
             Attempt { cost: None, message }
         }
@@ -78,6 +127,11 @@ fn attempt(found: &Result<FoundMotion, SweepError>) -> Attempt {
 }
 
 impl FoundMotion {
+    /// What is wrong with starts that came to nothing, in words.
+    pub fn without_answer(&self) -> Vec<String> {
+        in_words(&self.attempts)
+    }
+
     /// Costs that starts came to, the least first, with how many came there; those are one that differ by less than a thousandth.
     pub fn answers(&self) -> Vec<(f64, usize)> {
         let mut costs: Vec<f64> = self.attempts.iter().filter_map(|attempt| attempt.cost).collect();

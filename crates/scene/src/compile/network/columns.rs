@@ -12,8 +12,3 @@ pub fn text_of(draft: &Draft, (site, file): (&Site, &str), expected: &str) -> Op
     });
     read.ok()
 }
-
-/// What the first line of such a file calls its columns, without their units.
-pub fn column_names(head: &str) -> Vec<&str> {
-    head.split(',').map(|cell| cell.trim().split(" [").next().unwrap_or_default()).collect()
-}

@@ -6,13 +6,11 @@ use souple_math::Vec3;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
-use super::columns::{column_names, text_of};
+use super::columns::text_of;
 use super::table::NumberOfMass;
 use crate::diagnostic::{Code, Site};
+use crate::plan_file::{PlanFault, PlanFile};
 use crate::spec::control::Feedback;
-
-/// How far a date may be from the start of its period, in periods: what decimals of a file do.
-const OFF: f64 = 1e-6;
 
 /// Commands of a control, period by period, and what it makes of deviations from the planned motion: `u_n − K_n (S − S_n)`.
 pub struct Plan {
@@ -61,9 +59,8 @@ pub fn number_of(body: &str, rows: &Range<usize>, name: &str) -> Option<NumberOf
 
 /// The plan of a control; `None` where the file was refused.
 ///
-/// The first column is the time at which periods begin [s]; that of the control has its name, `BODY.CONTROL`, before its unit. Columns
-/// `BODY.CONTROL / NUMBER` are gains, and `NUMBER` has a column with what it is planned to be. Gains are left aside where there is no
-/// `feedback`.
+/// Columns `BODY.CONTROL / NUMBER` are gains, and `NUMBER` has a column with what it is planned to be. Gains are left aside where there is
+/// no `feedback`.
 pub fn read(
     draft: &Draft,
     body: &Placed,
@@ -71,70 +68,41 @@ pub fn read(
     control: &str,
     feedback: Feedback,
 ) -> Option<Plan> {
-    let (body, rows) = (body.spec.name.as_str(), &body.rows);
-    let refuse = |code: Code, message: String, expected: &str| {
-        draft.log.add(code, site, format!("`{file}`: {message}"), expected);
-        None
-    };
     let text = text_of(draft, (site, file), "a plan, as `souple sweep` writes it")?;
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let head = lines.next().map_or("", |(_, line)| line);
-    let names = column_names(head);
-    let column_of = |name: &str| names.iter().skip(1).position(|known| *known == name).map(|at| at + 1);
-    let Some(column) = column_of(control) else {
-        let message = format!("no column is of `{control}`");
-        return refuse(
-            Code::UnknownName,
-            message,
-            "columns `time [s]` and `BODY.CONTROL [N]`, named in the first line",
-        );
-    };
-    for (at, unit) in [(0, "s"), (column, "N")] {
-        let cell = head.split(',').nth(at).unwrap_or_default().trim();
-        let has_other = cell.split_once(" [").is_some_and(|(_, rest)| rest.trim_end_matches(']') != unit);
-        if has_other {
-            return refuse(Code::WrongType, format!("a column is `{cell}`"), "times in s and commands in N");
-        }
-    }
-    // columns of what is planned and of the gain, and what there is of each
-    let mut gains: Vec<([usize; 2], Gain)> = Vec::new();
-    for (at, name) in names.iter().enumerate().filter(|_| feedback == Feedback::AsPlanned) {
+    let plan = PlanFile::read(&text, draft.spec.world.period)
+        .and_then(|file| of_file(&file, (&body.spec.name, &body.rows), control, feedback));
+    plan.map_err(|PlanFault { code, found, expected }| {
+        draft.log.add(code, site, format!("`{file}`: {found}"), expected);
+    })
+    .ok()
+}
+
+fn of_file(
+    file: &PlanFile,
+    (body, rows): (&str, &Range<usize>),
+    control: &str,
+    feedback: Feedback,
+) -> Result<Plan, PlanFault> {
+    let column = file.column_of_commands(control)?;
+    let mut gains = Vec::new();
+    for (at, name) in file.names().filter(|_| feedback == Feedback::AsPlanned) {
         let Some(number) = name.strip_prefix(control).and_then(|rest| rest.strip_prefix(" / ")) else {
             continue;
         };
-        let (Some(planned), Some(of)) = (column_of(number), number_of(body, rows, number)) else {
+        let (Some(planned), Some(of)) = (file.column_of(number), number_of(body, rows, number)) else {
             let expected = format!(
                 "positions and velocities of masses of the network, `{body}[0].x` to `{body}[{}].v.z`, with a column of what each is \
                  planned to be",
                 rows.len().saturating_sub(1)
             );
-            return refuse(Code::UnknownName, format!("a gain is of `{number}`"), &expected);
+            return Err(PlanFault {
+                code: Code::UnknownName,
+                found: format!("a gain is of `{number}`"),
+                expected,
+            });
         };
-        gains.push(([planned, at], Gain { number: of, planned: Vec::new() }));
+        let planned = file.column(planned).zip(file.column(at)).map(|(planned, gain)| [planned, gain]);
+        gains.push(Gain { number: of, planned: planned.collect() });
     }
-    let (period, count) = (draft.spec.world.period, names.len());
-    let mut commands = Vec::new();
-    for (number, line) in lines {
-        let cells: Vec<f64> = line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect();
-        if cells.len() != count || !cells.iter().all(|cell| cell.is_finite()) {
-            let message = format!("line {} is `{}`", number + 1, line.trim());
-            return refuse(
-                Code::WrongType,
-                message,
-                "as many finite numbers with commas as the first line has names",
-            );
-        }
-        if (cells[0] / period - commands.len() as f64).abs() > OFF {
-            let message = format!("line {} is of {} s", number + 1, cells[0]);
-            let expected =
-                format!("{} s: a row for each period of {period} s", commands.len() as f64 * period);
-            return refuse(Code::Conflict, message, &expected);
-        }
-        commands.push(cells[column]);
-        gains.iter_mut().for_each(|(columns, gain)| gain.planned.push(columns.map(|column| cells[column])));
-    }
-    if commands.is_empty() {
-        return refuse(Code::EmptyRegion, "it has no rows".to_owned(), "a row for each period");
-    }
-    Some(Plan { commands, gains: gains.into_iter().map(|(_, gain)| gain).collect() })
+    Ok(Plan { commands: file.column(column).collect(), gains })
 }

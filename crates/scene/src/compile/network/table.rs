@@ -1,10 +1,11 @@
 //! Tables of commands over a state space: files of `souple sweep`, a row for each state.
 
+use souple_io::NumberTable;
 use souple_math::Vec3;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
-use super::columns::{column_names, text_of};
+use super::columns::text_of;
 use super::controls::Input;
 use crate::diagnostic::{Code, Site};
 use crate::spec::control::{ControlSpec, Drives, INPUTS, Lookup, STATES, StateSpec};
@@ -130,30 +131,21 @@ pub fn read(
         None
     };
     let text = text_of(draft, (site, file), "a table, as `souple sweep` writes it")?;
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let head = lines.next().map_or("", |(_, line)| line);
-    let columns = column_names(head);
-    let column_of = |name: &str| columns.iter().skip(names.len()).position(|known| *known == name);
-    let Some(column) = column_of(control).filter(|_| columns.starts_with(names)) else {
+    let read = match NumberTable::read(&text, &["value"]) {
+        Ok(read) => read,
+        Err(fault) => {
+            let message = format!("{}: {} is {}", fault.place, fault.subject, fault.found);
+            return refuse(Code::WrongType, message, &fault.expected);
+        }
+    };
+    let columns: Vec<&str> = (0..read.heads.len()).map(|column| read.name(column)).collect();
+    let Some(column) = read.column_of(control, names.len()).filter(|_| columns.starts_with(names)) else {
         let expected = format!("columns {}, `{control} [N]` and `value [s]`", names.join(", "));
         return refuse(Code::UnknownName, format!("its columns are `{}`", columns.join(", ")), &expected);
     };
-    let (column, value) = (column + names.len(), column_of("value").map(|at| at + names.len()));
-    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
-    for (number, line) in lines {
-        let cells: Vec<f64> = line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect();
-        let is_number = |(at, cell): (usize, &f64)| cell.is_finite() || Some(at) == value;
-        if cells.len() != columns.len() || !cells.iter().enumerate().all(is_number) {
-            let message = format!("line {} is `{}`", number + 1, line.trim());
-            return refuse(
-                Code::WrongType,
-                message,
-                "as many finite numbers with commas as the first line has names",
-            );
-        }
-        rows.push((number + 1, cells));
-    }
-    let axes: Vec<Vec<f64>> = (0..names.len()).map(|at| places(&rows, at)).collect();
+    let value = read.column_of("value", names.len());
+    let rows = &read.rows;
+    let axes: Vec<Vec<f64>> = (0..names.len()).map(|at| places(rows, at)).collect();
     let of_entry = |mut entry: usize| {
         let mut state = vec![0.0; axes.len()];
         for (number, axis) in state.iter_mut().zip(&axes).rev() {
