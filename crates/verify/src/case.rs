@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::reading::Reading;
 use crate::refinement::Refinement;
 use crate::row::{Problem, Row, RunOfRow};
+use crate::runs::{RunKey, Runs};
 
 /// How far a number may be from its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,17 +65,18 @@ impl Case {
 
     /// Runs the scene and compares.
     pub fn run(&self) -> Row {
-        self.run_with(&[])
+        self.run_with(&mut Runs::default(), false)
     }
 
     /// Runs it with the mutation: the row must fail.
     pub fn run_mutated(&self) -> Row {
-        self.run_with(&[self.mutation])
+        self.run_with(&mut Runs::default(), true)
     }
 
-    fn run_with(&self, more: &[&str]) -> Row {
+    /// The same by runs that are there, or are made.
+    pub(crate) fn run_with(&self, known: &mut Runs, is_mutated: bool) -> Row {
         let clock = Instant::now();
-        let runs = self.runs(more);
+        let runs = self.runs(known, is_mutated);
         let (measured, unit, runs, problem) = match runs.and_then(|(unit, runs)| {
             let measured = match &self.refinement {
                 Some(refinement) => refinement.order_of(&runs)?,
@@ -92,15 +94,13 @@ impl Case {
     }
 
     /// Unit and values of the runs; one where nothing is refined.
-    fn runs(&self, more: &[&str]) -> Result<(&'static str, Vec<RunOfRow>), Problem> {
+    fn runs(&self, known: &mut Runs, is_mutated: bool) -> Result<(&'static str, Vec<RunOfRow>), Problem> {
         let mut unit = "";
         let mut runs = Vec::new();
         for (size, settings, command) in self.variants() {
-            let settings: Vec<String> =
-                settings.into_iter().chain(more.iter().copied()).map(str::to_owned).collect();
             let (value, unit_of_value) = self
                 .reading
-                .read(self.scene, &settings)
+                .read(self.key(settings, is_mutated), known)
                 .map_err(|problem| Problem { message: format!("{command}: {problem}"), ..problem })?;
             unit = unit_of_value;
             runs.push(RunOfRow { size, value, error: None, command });
@@ -109,6 +109,24 @@ impl Case {
             refinement.set_errors(&mut runs);
         }
         Ok((unit, runs))
+    }
+
+    /// What is read with settings.
+    fn key(&self, settings: Vec<&'static str>, is_mutated: bool) -> RunKey {
+        let more = is_mutated.then_some(self.mutation);
+        RunKey {
+            scene: self.scene,
+            settings: settings.into_iter().chain(more).collect(),
+            steps: self.reading.steps(),
+        }
+    }
+
+    /// Runs that it reads; none where it reads something else.
+    pub(crate) fn run_keys(&self, is_mutated: bool) -> Vec<RunKey> {
+        if !self.reading.reads_a_run() {
+            return Vec::new();
+        }
+        self.variants().into_iter().map(|(_, settings, _)| self.key(settings, is_mutated)).collect()
     }
 
     /// Size, settings and command of each run.

@@ -12,7 +12,9 @@ mod derivation;
 mod reading;
 mod refinement;
 mod row;
+mod runs;
 pub mod scenes;
+pub mod suite;
 
 pub use case::{Case, Tolerance, cases};
 pub use cases::{TABLES, all};

@@ -2,13 +2,13 @@
 
 use souple_models::materials::Lame;
 use souple_models::solids::{OperatorQuality, operator_quality};
-use souple_run::{Control, Options, Report, Status, Trace};
+use souple_run::{Report, Status, Trace};
 use souple_scene::Scene;
 
 use crate::bench::{Clock, with_threads};
 use crate::derivation::{self, Count};
 use crate::row::Problem;
-use crate::scenes;
+use crate::runs::{RunKey, Runs};
 
 /// What is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,21 +163,38 @@ impl Reading {
         format!("souple {verb} scenes/{scene}{settings}{end}")
     }
 
+    /// World periods to step; the scene's duration where `None`.
+    pub(crate) fn steps(&self) -> Option<u64> {
+        match self {
+            Self::Probe(observation) => observation.steps,
+            _ => None,
+        }
+    }
+
+    /// Whether others may read the same run.
+    pub(crate) fn reads_a_run(&self) -> bool {
+        matches!(self, Self::Probe(_) | Self::Ratio { .. } | Self::NewtonIterations | Self::Steps)
+    }
+
+    /// Whether what else the machine does at the same time has a part in it.
+    pub(crate) fn measures_time(&self) -> bool {
+        matches!(self, Self::StepMilliseconds)
+    }
+
     /// The number and its unit.
     ///
     /// # Errors
     /// Why there is none, in words.
-    pub(crate) fn read(&self, name: &str, settings: &[String]) -> Result<(f64, &'static str), Problem> {
-        if let Self::Derived(count) = self {
-            return Ok((derivation::count(*count, settings)?, ""));
-        }
-        let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
-        let scene = souple_scene::read_text_with_files(name, text, &scenes::files(name), settings)
-            .map_err(|diagnostics| diagnostics.to_string())?;
+    pub(crate) fn read(&self, key: RunKey, runs: &mut Runs) -> Result<(f64, &'static str), Problem> {
         match self {
-            Self::Probe(observation) => observation.read(name, scene),
+            Self::Probe(observation) => {
+                let finished = runs.of(&key)?;
+                done(&finished.report)?;
+                observation.read(&finished.traces)
+            }
             Self::Ratio { of, to, component } => {
-                let report = done(report_of(name, scene)?)?;
+                let finished = runs.of(&key)?;
+                let report = done(&finished.report)?;
                 let value = |probe: &str| {
                     let found = report.probes.iter().find(|summary| summary.name == probe);
                     let value = found.and_then(|summary| summary.last.get(*component).copied());
@@ -185,9 +202,10 @@ impl Reading {
                 };
                 Ok((value(of)? / value(to)?, ""))
             }
-            Self::NaturalFrequency(number) => frequency(scene, *number, 0.0),
-            Self::FreeFrequency(number) => frequency(scene, *number, 1.0),
+            Self::NaturalFrequency(number) => frequency(key.scene()?, *number, 0.0),
+            Self::FreeFrequency(number) => frequency(key.scene()?, *number, 1.0),
             Self::Operator { operator, number } => {
+                let scene = key.scene()?;
                 let mesh = &scene.bodies.first().ok_or("the scene has no body")?.mesh;
                 // V-01's, as `souple mesh operators` has them
                 let moduli = Lame { mu: 7000.0, lambda: 20000.0 };
@@ -195,13 +213,19 @@ impl Reading {
                 let quality = all.iter().find(|quality| quality.operator == *operator);
                 Ok((number.of(quality.ok_or_else(|| format!("there is no operator `{operator}`"))?), ""))
             }
-            Self::Derived(_) => unreachable!("counted above"),
+            Self::Derived(count) => {
+                let settings: Vec<String> =
+                    key.settings.iter().map(|setting| (*setting).to_owned()).collect();
+                Ok((derivation::count(*count, &settings)?, ""))
+            }
             Self::ScaledJacobian => {
+                let scene = key.scene()?;
                 let mesh = &scene.bodies.first().ok_or("the scene has no body")?.mesh;
                 let shapes = mesh.quality().into_iter().map(|cell| cell.scaled_jacobian);
                 Ok((shapes.fold(f64::INFINITY, f64::min), ""))
             }
             Self::HighestFrequency => {
+                let scene = key.scene()?;
                 let mut world = scene.model.start(scene.state);
                 let forecast = world.with_system(0, |system, state, around, ws| {
                     souple_engine::stability::forecast(system, state, around, ws)
@@ -209,6 +233,7 @@ impl Reading {
                 Ok((forecast.highest_frequency, "rad/s"))
             }
             Self::MomentCondition(name) => {
+                let scene = key.scene()?;
                 let body = scene.bodies.iter().find(|body| body.name == *name);
                 let frames = body.and_then(|body| body.frames.as_ref());
                 Ok((frames.ok_or("the scene has no such body of frames")?.report.moment_condition, ""))
@@ -216,16 +241,17 @@ impl Reading {
             Self::StepMilliseconds => {
                 let run = || {
                     let clock = Clock::start();
-                    (report_of(name, scene), clock.seconds())
+                    (key.run(), clock.seconds())
                 };
-                let (report, seconds) = with_threads(1, run)?;
-                Ok((1e3 * seconds / done(report?)?.steps as f64, "ms"))
+                let (finished, seconds) = with_threads(1, run)?;
+                Ok((1e3 * seconds / done(&finished?.report)?.steps as f64, "ms"))
             }
             Self::NewtonIterations => {
-                let report = done(report_of(name, scene)?)?;
+                let finished = runs.of(&key)?;
+                let report = done(&finished.report)?;
                 Ok((report.solver.newton_iterations as f64 / report.steps as f64, ""))
             }
-            Self::Steps => Ok((report_of(name, scene)?.steps as f64, "")),
+            Self::Steps => Ok((runs.of(&key)?.report.steps as f64, "")),
         }
     }
 }
@@ -237,14 +263,8 @@ fn frequency(scene: Scene, number: usize, near: f64) -> Result<(f64, &'static st
     Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
 }
 
-fn report_of(name: &str, scene: Scene) -> Result<Report, Problem> {
-    let options = Options { scene_name: name.to_owned(), ..Options::default() };
-    let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue);
-    Ok(outcome.map_err(|error| error.to_string())?.report)
-}
-
 /// Of a run that went to its end.
-fn done(report: Report) -> Result<Report, Problem> {
+fn done(report: &Report) -> Result<&Report, Problem> {
     match report.status {
         Status::Done => Ok(report),
         _ => Err(Problem { message: report.warnings.join("; "), has_run: true }),
@@ -252,14 +272,8 @@ fn done(report: Report) -> Result<Report, Problem> {
 }
 
 impl Observation {
-    fn read(&self, name: &str, scene: Scene) -> Result<(f64, &'static str), Problem> {
-        let options = Options { steps: self.steps, scene_name: name.to_owned(), ..Options::default() };
-        let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue)
-            .map_err(|error| error.to_string())?;
-        if outcome.report.status != Status::Done {
-            return Err(Problem { message: outcome.report.warnings.join("; "), has_run: true });
-        }
-        let trace = outcome.traces.iter().find(|trace| trace.name == self.probe);
+    fn read(&self, traces: &[Trace]) -> Result<(f64, &'static str), Problem> {
+        let trace = traces.iter().find(|trace| trace.name == self.probe);
         let trace = trace.ok_or_else(|| format!("the scene has no probe `{}`", self.probe))?;
         let value = self.statistic.of(trace, self.component.unwrap_or(0));
         let unit = match self.statistic {

@@ -15,6 +15,9 @@ pub struct Arguments {
     /// Runs every case under its mutation instead: each row must fail
     #[arg(long)]
     mutations: bool,
+    /// Cases at once; as many as there are cores where left out
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    jobs: Option<u64>,
     #[arg(long)]
     pub json: bool,
 }
@@ -37,14 +40,15 @@ pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
     // under its mutation a case that still holds, or whose scene is refused, sees nothing
     let is_as_wanted = |row: &Row| if arguments.mutations { row.sees_mutation() } else { row.pass };
     let verdict = if arguments.mutations { "seen" } else { "ok" };
-    let mut rows: Vec<Row> = Vec::new();
-    for case in cases {
-        let row = if arguments.mutations { case.run_mutated() } else { case.run() };
+    let mut tell = |row: &Row| {
         if !arguments.json {
-            print_line(format_args!("{:4} {row}", if is_as_wanted(&row) { verdict } else { "FAIL" }));
+            print_line(format_args!("{:4} {row}", if is_as_wanted(row) { verdict } else { "FAIL" }));
         }
-        rows.push(row);
-    }
+    };
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let jobs = arguments.jobs.map_or(cores, |jobs| jobs as usize);
+    let rows = souple_verify::suite::run(&cases, arguments.mutations, jobs, &mut tell)
+        .map_err(|message| Refusal::work("threads", message))?;
     let failed: Vec<&str> = rows.iter().filter(|row| !is_as_wanted(row)).map(|row| row.case.id).collect();
     if arguments.json {
         print_json(&Value::Array(rows.iter().map(Row::to_json).collect()));
