@@ -7,6 +7,7 @@
 mod boundary;
 pub mod coarsen;
 mod conformity;
+mod creases;
 mod decimate;
 mod element;
 mod error;
@@ -40,6 +41,7 @@ mod winding;
 
 pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, facet_triangles, node_measures};
 pub use conformity::{Conformity, HangingPoint};
+pub use creases::creases;
 pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodePlace, NodeValues};
 pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};

@@ -105,9 +105,6 @@ pub struct BodyInfo {
     pub faces: Option<FacesInfo>,
 }
 
-/// Sine of the angle below which two triangles lie in one plane.
-const FLAT: f64 = 1e-6;
-
 /// Bodies of a network that keep out of each other by their faces.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FacesInfo {
@@ -124,26 +121,6 @@ impl FacesInfo {
             let number = self.bodies.iter().position(|body| body.contains(corner));
             number.unwrap_or(0) as u32
         })
-    }
-
-    /// Sides of triangles, each once, but for those between two that lie in one plane where points are: what is seen as edges.
-    pub fn edges(&self, points: &[Vec3]) -> Vec<[u32; 2]> {
-        let normal = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|corner| points[corner as usize]);
-            (b - a).cross(c - a).try_normalised().unwrap_or(Vec3::ZERO)
-        };
-        let sides = |corners: &[u32; 3]| {
-            let normal = normal(corners);
-            let [a, b, c] = *corners;
-            [[a, b], [b, c], [c, a]].map(|[from, to]| ([from.min(to), from.max(to)], normal))
-        };
-        let mut all: Vec<([u32; 2], Vec3)> = self.triangles.iter().flat_map(sides).collect();
-        all.sort_by_key(|(ends, _)| *ends);
-        let is_seen = |same: &&[([u32; 2], Vec3)]| match same {
-            [(_, one), (_, other)] => one.cross(*other).length() > FLAT || one.dot(*other) < 0.0,
-            _ => true,
-        };
-        all.chunk_by(|a, b| a.0 == b.0).filter(is_seen).map(|same| same[0].0).collect()
     }
 
     /// Whether both points are of one of the bodies.

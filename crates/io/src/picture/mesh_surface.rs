@@ -1,18 +1,15 @@
 //! Surfaces of meshes: the boundary, the cells one by one, what a cut leaves.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, facet_triangles, polygon_triangles, vertex_normals};
+use souple_mesh::{Cell, ElementKind, Mesh, creases, facet_triangles, polygon_triangles, vertex_normals};
 
 use super::surface::{Laid, Paint, Surface};
 use super::texture::Texture;
 use super::tubes::along;
-
-/// Sine of the angle below which two triangles lie in one plane.
-const FLAT: f64 = 1e-6;
 
 /// A place between two points of a mesh: `x = (1 - share) x_from + share x_to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -295,22 +292,12 @@ impl MeshSurface {
     /// Draws no edge between triangles that lie in one plane: they are of one face.
     pub fn hide_flat_edges(&mut self) {
         let Surface { points, triangles, edges, .. } = &mut self.surface;
-        let normal = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).try_normalised();
-        let mut beside: HashMap<[u32; 2], Vec<Option<Vec3>>> = HashMap::new();
-        let side = |corners: &[u32; 3], at: usize| {
-            let (from, to) = (corners[at], corners[(at + 1) % 3]);
-            [from.min(to), from.max(to)]
-        };
-        for corners in triangles.iter() {
-            let normal = normal(corners.map(|corner| points[corner as usize]));
-            (0..3).for_each(|at| beside.entry(side(corners, at)).or_default().push(normal));
-        }
+        let seen: HashSet<[u32; 2]> = creases(triangles, points).into_iter().collect();
         edges.resize(triangles.len(), [true; 3]);
         for (corners, marks) in triangles.iter().zip(edges) {
             for (at, mark) in marks.iter_mut().enumerate() {
-                if let [Some(one), Some(other)] = beside[&side(corners, at)][..] {
-                    *mark &= one.cross(other).length() > FLAT || one.dot(other) < 0.0;
-                }
+                let (from, to) = (corners[at], corners[(at + 1) % 3]);
+                *mark &= seen.contains(&[from.min(to), from.max(to)]);
             }
         }
     }

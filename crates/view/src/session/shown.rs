@@ -72,7 +72,8 @@ impl Shown {
         if let Some(faces) = &body.faces {
             let of_points = faces.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
             shown.triangles = of_points.collect();
-            shown.edges = faces.edges(&mesh.points).into_iter().map(numbered).collect();
+            shown.edges =
+                souple_mesh::creases(&faces.triangles, &mesh.points).into_iter().map(numbered).collect();
             // they need not close
             shown.is_sheet = true;
         }
