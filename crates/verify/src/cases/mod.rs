@@ -16,6 +16,7 @@ mod elements;
 mod energy;
 mod explicit;
 mod filling;
+mod fluids;
 mod formulations;
 mod frames;
 mod frequencies;
@@ -25,6 +26,7 @@ mod implicit;
 mod incompressible;
 mod inelastic;
 mod late;
+mod layers;
 mod levels;
 mod loads;
 mod long_beam;
@@ -37,6 +39,8 @@ mod modal;
 mod motion;
 mod moving_frame;
 mod network;
+mod network_friction;
+mod network_stability;
 mod octree;
 mod patch;
 mod plastic_bodies;
@@ -51,11 +55,13 @@ mod rigid;
 mod rubber;
 mod shells;
 mod skins;
+mod sliding;
 mod soft_cube;
 mod splits;
 mod step_limits;
 mod stepper_orders;
 mod strain_measures;
+mod strings;
 mod switching;
 mod thick_sphere;
 pub(crate) mod tools;
@@ -117,6 +123,9 @@ pub const TABLES: &[&[Case]] = &[
     strain_measures::CASES,
     contact::CASES,
     network::CASES,
+    network_friction::CASES,
+    strings::CASES,
+    network_stability::CASES,
     network::STOPS.as_flattened(),
     network::RATTLE.as_flattened(),
     rheometer::CASES,
@@ -139,6 +148,9 @@ pub const TABLES: &[&[Case]] = &[
     rigid::CASES,
     material_fields::CASES,
     matter::CASES,
+    fluids::CASES,
+    layers::CASES,
+    sliding::CASES,
     plastic_bodies::CASES,
     plastic_bodies::BLOCKS,
     plastic_bodies::SAMPLES,

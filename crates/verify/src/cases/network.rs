@@ -1,5 +1,4 @@
-//! Masses and links: the recurrence of a mass, oscillators step by step, momenta, friction, multitudes, modes of lines and
-//! surfaces.
+//! Masses and links: the recurrence of a mass, oscillators step by step, momenta, impacts, multitudes.
 
 use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
 
@@ -22,13 +21,8 @@ const UNDAMPED: &str = "networks.oscillator.links[0].law.damping=0";
 
 /// A mass that nothing holds.
 const FREE: &str = r#"networks.oscillator.links[0].law={ name = "spring", stiffness = 0 }"#;
-const STILL: &str = "networks.table.masses.book.velocity=[0, 0, 0]";
 const IMPULSE: &str =
     r#"networks.oscillator.loads=[{ region = "bob", force = ["if(t > 0.15 and t < 0.25, 10, 0)", 0, 0] }]"#;
-
-/// A stiffness of M/(Te² 4 sin²(10 π/22)), with which 2 - κ λ is one.
-const SIXTH_OF_A_TURN: &str =
-    r#"networks.line.links[0].law={ name = "spring_damper", stiffness = 273984606.84943587, damping = 0 }"#;
 
 /// With the scene's period of 10 ms, `g Te²` is a metre.
 const UNIT_FALL: &str = "world.gravity=[0, 0, -10000]";
@@ -167,56 +161,6 @@ pub(super) const RATTLE: &[[Case; 2]] = &[
     ],
 ];
 
-const THROWN_WEIGHT: &[&str] = &[
-    "networks.string.masses.weight.positions=[[0.05, 0.02, -0.1]]",
-    "networks.string.masses.weight.velocity=[0, 0, -1]",
-    r#"networks.string.pins=[{ region = "string", axes = "xy" }]"#,
-];
-
-/// A line along an axis and what strikes it from space, each by its own recurrence.
-const STRUCK: Case = Case {
-    scene: "weight_on_string",
-    // rounding of places of a decimetre, two hundred steps, over a millimetre
-    tolerance: Tolerance::Relative(1e-10),
-    source: "JIM-91: string excited by a 3D object; X' = 2 X - X_before + Te² F/m of both, F of the spring by its distance in space",
-    mutation: "networks.string.links[1].law.damping=0.501",
-    ..OSCILLATOR
-};
-
-const MODE: Case = Case {
-    scene: "vibrating_modes",
-    reading: Reading::last("line").after(1000),
-    // of the amplitude, 1 mm (EXP-49)
-    tolerance: Tolerance::Absolute(1e-16),
-    source: "EXP-49: q_n = A cos(ω (n + 1/2) Te)/cos(ω Te/2) from rest, ω Te = 2 asin(√(K/M) sin(p π/22))",
-    mutation: "networks.line.links[0].law.stiffness=536870914",
-    ..OSCILLATOR
-};
-
-/// A chain and a cluster at the edge of stability.
-const LIMIT: Case = Case {
-    capabilities: &["JIM-94"],
-    scene: "network_limits",
-    source: "EXP-51: q' = (2 - (κ + ζ) λ) q - (1 - ζ λ) q_before from rest, stable up to (κ + 2 ζ) λ = 4",
-    ..OSCILLATOR
-};
-
-const CHAIN: Case = Case {
-    reading: Reading::last("chain").after(200),
-    // rounding, which grows as they do
-    tolerance: Tolerance::Relative(1e-11),
-    mutation: "networks.chain.masses.free.mass=1.00001",
-    ..LIMIT
-};
-
-const CLUSTER: Case = Case {
-    capabilities: &["JIM-94", "JIM-26"],
-    reading: Reading::last("cluster").after(10),
-    tolerance: Tolerance::Absolute(1e-13),
-    mutation: "networks.cluster.masses.balls.mass=1.00001",
-    ..LIMIT
-};
-
 /// Links that may yield and tear, and balls that push; all thrown with a spin.
 const THROWN: [&str; 3] = [
     "networks.lattice.angular_velocity=[0, 0, 2]",
@@ -228,15 +172,6 @@ const THROWN: [&str; 3] = [
 const PROJECTED: &str = r#"networks.pair.links[0].law={ name = "formula", push = "-k * (D - L0) - z / period * (D - D_before * sqrt(1 - (twice_swept / (D * D_before))^2))", parameters = { k = 2000, z = 20, period = 0.01, twice_swept = 0.03 } }"#;
 
 const NANONEWTON: &str = r#"networks.lattice.loads=[{ region = "lower", force = ["1e-9", 0, 0] }]"#;
-
-/// Links with memory at the edge of stability, where the force that a change of sign in each step makes, over the elongation,
-/// is 4 M.
-const REMEMBERING: Case = Case {
-    source: "EXP-51: stable up to H(-1) λ = 4 M (specification §2.6); the law's own recurrence for the mode",
-    // rounding, which grows as they do
-    tolerance: Tolerance::Relative(1e-10),
-    ..CHAIN
-};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -392,28 +327,6 @@ pub(super) const CASES: &[Case] = &[
         ..OSCILLATOR
     },
     Case {
-        id: "network_stable",
-        capabilities: &["JIM-94"],
-        what: "displacement after 100 steps at κ = 1, ζ = 1.49, just below K + 2Z = 4M",
-        settings: &[
-            "networks.oscillator.links[0].law={ name = \"spring_damper\", stiffness = 100, damping = 14.9 }",
-        ],
-        reading: Reading::component("place", 0).after(100),
-        reference: -0.091_279_440_534_536_52,
-        ..OSCILLATOR
-    },
-    Case {
-        id: "network_unstable",
-        capabilities: &["JIM-94"],
-        what: "the same at ζ = 1.51, just above, where it grows",
-        settings: &[
-            "networks.oscillator.links[0].law={ name = \"spring_damper\", stiffness = 100, damping = 15.1 }",
-        ],
-        reading: Reading::component("place", 0).after(100),
-        reference: 0.024_432_544_470_258_888,
-        ..OSCILLATOR
-    },
-    Case {
         id: "network_spin",
         capabilities: &["JIM-6"],
         what: "kinetic energy of two masses that turn, joined by a spring and damper, after 20 s",
@@ -499,138 +412,6 @@ pub(super) const CASES: &[Case] = &[
         ..OSCILLATOR
     },
     Case {
-        id: "sliding_distance",
-        capabilities: &["JIM-45", "JIM-47", "JIM-22"],
-        what: "a mass at 2 m/s slides v²/(2 μ g) on a huge ball and stops",
-        scene: "network_friction",
-        reading: Reading::component("place", 0),
-        reference: 0.509_683_995_922_528,
-        tolerance: Tolerance::Relative(1e-2),
-        source: "EXP-38: within 1 %",
-        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "sliding_distance_slow",
-        capabilities: &["JIM-45"],
-        what: "the same at 1 m/s",
-        scene: "network_friction",
-        settings: &["networks.table.masses.book.velocity=[1, 0, 0]"],
-        reading: Reading::component("place", 0),
-        reference: 0.127_420_998_980_632,
-        tolerance: Tolerance::Relative(1e-2),
-        source: "EXP-38: within 1 %",
-        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "friction_holds_below",
-        capabilities: &["JIM-46", "JIM-47"],
-        what: "way of a mass under gravity that has leaned within half a second to tan θ = 0.582, 3 % below the static coefficient: that of its hook",
-        scene: "network_friction",
-        settings: &[STILL, r#"world.gravity=["9.81 * 0.582 * min(t / 0.5, 1)", 0, -9.81]"#],
-        reading: Reading::component("place", 0),
-        // F_t/K_t
-        reference: 0.582 * 9.81 / 1e5,
-        // what swings on the hook when gravity stops leaning: F/(T K √(K/M)), T half a second, and the way the ball turns, F/K of ten kilometres
-        tolerance: Tolerance::Absolute(0.582 * 9.81 / 1e5 / 158.0 + 1e-8),
-        source: "EXP-38: slides iff tan θ > mu_s, load ramped over 0.5 s, within 3 % (specification §2.14.5)",
-        mutation: r#"world.gravity=["9.81 * 0.618 * min(t / 0.5, 1)", 0, -9.81]"#,
-        ..OSCILLATOR
-    },
-    Case {
-        id: "friction_slides_above",
-        capabilities: &["JIM-46", "JIM-47"],
-        what: "way of the same at tan θ = 0.618, 3 % above: in the second and a half after it, at g (0.618 - 0.4)",
-        scene: "network_friction",
-        settings: &[STILL, r#"world.gravity=["9.81 * 0.618 * min(t / 0.5, 1)", 0, -9.81]"#],
-        reading: Reading::component("place", 0),
-        // from 0.6 on: at least that of the last second and a half alone
-        reference: 0.5 * 9.81 * 0.218 * 1.5 * 1.5,
-        tolerance: Tolerance::AtLeast,
-        source: "EXP-38: slides iff tan θ > mu_s, load ramped over 0.5 s, within 3 % (specification §2.14.5)",
-        mutation: r#"world.gravity=["9.81 * 0.582 * min(t / 0.5, 1)", 0, -9.81]"#,
-        ..OSCILLATOR
-    },
-    Case {
-        id: "sticking_hook",
-        capabilities: &["JIM-46", "JIM-47"],
-        what: "at rest under gravity that leans to tan θ = 0.5 the mass hangs on its hook: F_t/K_t from its place",
-        scene: "network_friction",
-        settings: &[
-            "networks.table.masses.book.velocity=[0, 0, 0]",
-            r#"world.gravity=["4.905 * min(t/0.5, 1)", 0, -9.81]"#,
-        ],
-        reading: Reading::component("place", 0),
-        reference: 4.905e-5,
-        // the ball turns by x/R on its way, and the normal force with it: N/(K R) = 1e-8; what swings on the hook dies away meanwhile
-        tolerance: Tolerance::Relative(2e-8),
-        source: "F_t = -K_t D_acc (specification §2.14.3)",
-        mutation: "networks.table.crowds[0].friction.stiffness=100001",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "chain_just_stable",
-        what: "a mass of a chain of ten in its fastest mode after 200 steps, its links at 1.02 of their 4M/λ = 1.02067",
-        settings: &["parameters.chain.stiffness=1069547.52"],
-        reference: -2.940_971_650_302_621,
-        ..CHAIN
-    },
-    Case {
-        id: "chain_just_unstable",
-        what: "the same at 1.0215: what was a tenth of a metre has grown to 158 km",
-        settings: &["parameters.chain.stiffness=1071120.384"],
-        reference: 158_110.737_055_827_04,
-        ..CHAIN
-    },
-    Case {
-        id: "damped_chain_just_stable",
-        what: "the same with dampers, K + 2Z at 1.02",
-        settings: &["parameters.chain.stiffness=524288", "parameters.chain.damping=266.24"],
-        reference: 5.678_066_773_912_985e-2,
-        ..CHAIN
-    },
-    Case {
-        id: "damped_chain_just_unstable",
-        what: "the same with K + 2Z at 1.022",
-        settings: &["parameters.chain.stiffness=524288", "parameters.chain.damping=267.264"],
-        reference: 0.261_013_724_166_939_3,
-        ..CHAIN
-    },
-    Case {
-        id: "cluster_just_stable",
-        what: "a ball of a tetrahedron of four that breathes, after 100 steps, K = 0.99 M",
-        settings: &["parameters.stiffness=1038090.24", "parameters.damping=0"],
-        reading: Reading::last("cluster").after(100),
-        reference: 0.033_912_209_436_047_74,
-        // places of 0.35 m, after a hundred steps that turn by half a circle each
-        tolerance: Tolerance::Absolute(1e-12),
-        ..CLUSTER
-    },
-    Case {
-        id: "cluster_just_unstable",
-        what: "the same after five steps, K = 1.01 M",
-        settings: &["parameters.stiffness=1059061.76", "parameters.damping=0"],
-        reading: Reading::last("cluster").after(5),
-        reference: -0.047_114_681_321_675_6,
-        ..CLUSTER
-    },
-    Case {
-        id: "damped_cluster_just_stable",
-        what: "the same with damping after forty steps, K + 2Z = 0.98 M",
-        settings: &["parameters.stiffness=629145.6", "parameters.damping=194.56"],
-        reading: Reading::last("cluster").after(40),
-        reference: 6.218_500_445_269_59e-5,
-        ..CLUSTER
-    },
-    Case {
-        id: "damped_cluster_just_unstable",
-        what: "the same after ten steps, K + 2Z = 1.02 M",
-        settings: &["parameters.stiffness=629145.6", "parameters.damping=215.04"],
-        reference: 0.011_458_484_968_762_477,
-        ..CLUSTER
-    },
-    Case {
         id: "sand_heap_stands",
         capabilities: &["JIM-28"],
         what: "height of the topmost ball of a heap on rough ground: more than two diameters",
@@ -667,201 +448,6 @@ pub(super) const CASES: &[Case] = &[
         source: "EXP-36: peak force = bonds x k_a (S2 - S)",
         mutation: "networks.clay.crowds[0].law.cohesion=1100",
         ..OSCILLATOR
-    },
-    Case {
-        id: "line_mode_1",
-        capabilities: &["JIM-12", "JIM-91"],
-        what: "displacement of the third of ten masses of a line in its lowest mode after 1000 steps",
-        reference: 0.000_607_595_779_866_530_6,
-        ..MODE
-    },
-    Case {
-        id: "line_mode_3",
-        capabilities: &["JIM-12", "JIM-91"],
-        what: "the same in the third mode",
-        settings: &["parameters.p=3"],
-        reference: 0.000_536_081_331_711_372_8,
-        ..MODE
-    },
-    Case {
-        id: "line_keeps_its_energy",
-        capabilities: &["JIM-94", "JIM-91"],
-        what: "energy of a line of ten masses in its tenth mode after 99,998 steps, over that after two, where the mode turns by 60° a step: with X K X/2 in the place of X K X_before/2 it swings by half of itself, and is greatest at these steps, so that the phase is not in it",
-        settings: &[
-            "parameters.p=10",
-            "networks.surface.start={ displacement = [0, 0, 0] }",
-            SIXTH_OF_A_TURN,
-        ],
-        reading: Reading::last("energy").taking(Statistic::LastOver(2)).after(99_998),
-        reference: 1.0,
-        // rounding of each step, as chance adds it up: √100000 ε
-        tolerance: Tolerance::Absolute(7e-14),
-        source: "specification §2.5: M (X - X_before)²/2 + X K X_before/2 is constant to rounding, 2e-14 in 100,000 steps [V]",
-        // a billionth of a newton second per metre
-        mutation: "networks.line.links[0].law.damping=1e-9",
-        ..MODE
-    },
-    Case {
-        id: "line_mode_10",
-        capabilities: &["JIM-12", "JIM-91"],
-        what: "the same in the highest mode",
-        settings: &["parameters.p=10"],
-        reference: 0.000_854_953_245_712_771_5,
-        mutation: "networks.line.links[0].along=[0.01, 0, 1]",
-        ..MODE
-    },
-    Case {
-        id: "surface_mode_2_1",
-        capabilities: &["JIM-12", "JIM-91"],
-        what: "displacement of a mass of a surface of four by five in mode (2, 1) after 1000 steps",
-        reading: Reading::last("surface").after(1000),
-        reference: 0.000_662_473_273_848_366_1,
-        source: "ω Te = 2 asin(√(K/M (sin²(p π/10) + sin²(q π/12)))): the line's, in two directions",
-        mutation: "networks.surface.links[0].law.stiffness=268435457",
-        ..MODE
-    },
-    Case {
-        id: "string_bears_weight",
-        capabilities: &["JIM-91"],
-        what: "how far a weight that hangs by a spring in space on a line of masses along an axis draws it down",
-        scene: "weight_on_string",
-        reading: Reading::last("string"),
-        // (W j (N - j)/N + m g j (N - j)/2)/K
-        reference: -1.839_375e-3,
-        tolerance: Tolerance::Relative(1e-12),
-        source: "K (2 u_i - u_{i-1} - u_{i+1}) = f_i",
-        mutation: "networks.string.links[1].along=[0, 0.1, 1]",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "weight_on_string",
-        capabilities: &["JIM-91"],
-        what: "the weight itself: that, and the elongation W/k of its spring",
-        scene: "weight_on_string",
-        reading: Reading::last("weight"),
-        reference: -3.801_375e-3,
-        tolerance: Tolerance::Relative(1e-12),
-        source: "equilibrium of the same",
-        mutation: "networks.string.links[1].law.stiffness=501",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "string_is_struck",
-        capabilities: &["JIM-91"],
-        what: "place of the middle of a line of masses along an axis a tenth of a second after a weight in space, hung askew on it by a spring and damper, was thrown down at 1 m/s",
-        settings: THROWN_WEIGHT,
-        reading: Reading::last("string").after(100),
-        reference: -1.089_190_874_912_091e-3,
-        ..STRUCK
-    },
-    Case {
-        id: "string_throws_back",
-        capabilities: &["JIM-91"],
-        what: "and how far the weight has come down by then",
-        settings: THROWN_WEIGHT,
-        reading: Reading::last("weight").after(100),
-        reference: -3.103_774_803_837_44e-3,
-        ..STRUCK
-    },
-    Case {
-        id: "string_swings_on",
-        capabilities: &["JIM-91"],
-        what: "the middle of the line a tenth of a second later",
-        settings: THROWN_WEIGHT,
-        reading: Reading::last("string").after(200),
-        reference: -1.801_543_344_505_805_5e-3,
-        ..STRUCK
-    },
-    Case {
-        id: "maxwell_chain_just_stable",
-        what: "a mass of a chain of ten of Maxwell's links in its fastest mode after 200 steps, 2 k z/(2 z + k Te) at 0.999 of its limit",
-        settings: &[r#"parameters.chain={ name = "maxwell", stiffness = 1445919, viscosity = 2000 }"#],
-        reference: 0.038_818_287_563_083_61,
-        ..REMEMBERING
-    },
-    Case {
-        id: "maxwell_chain_just_unstable",
-        what: "the same at 1.001, where it grows",
-        settings: &[r#"parameters.chain={ name = "maxwell", stiffness = 1451714, viscosity = 2000 }"#],
-        reference: 3.332_097_429_306_997,
-        ..REMEMBERING
-    },
-    Case {
-        id: "burger_chain_just_stable",
-        what: "the same of Burger's links, k3 + 1/(1/(k1 + 2 z1/Te) + (2 z2 + k2 Te)/(2 k2 z2)) at 0.998 of its limit",
-        settings: &[
-            r#"parameters.chain={ name = "burger", solid_stiffness = 500000, solid_viscosity = 1000, fluid_stiffness = 1000000, fluid_viscosity = 3000, stiffness = 425122 }"#,
-        ],
-        reference: 2.425_654_436_626_984e-3,
-        ..REMEMBERING
-    },
-    Case {
-        id: "burger_chain_just_unstable",
-        what: "the same at 1.002",
-        settings: &[
-            r#"parameters.chain={ name = "burger", solid_stiffness = 500000, solid_viscosity = 1000, fluid_stiffness = 1000000, fluid_viscosity = 3000, stiffness = 429395 }"#,
-        ],
-        reference: 12.031_078_255_678_48,
-        ..REMEMBERING
-    },
-    Case {
-        id: "plastic_chain_just_stable",
-        what: "the same of elasto-plastic links that do not yield: that of springs at 1.02 of 1.02067",
-        settings: &[
-            r#"parameters.chain={ name = "elasto_plastic", stiffness = 1069547.52, traction = 1e12 }"#,
-        ],
-        reference: -2.940_971_650_302_621,
-        ..REMEMBERING
-    },
-    Case {
-        id: "plastic_chain_just_unstable",
-        what: "the same at 1.0215",
-        settings: &[
-            r#"parameters.chain={ name = "elasto_plastic", stiffness = 1071120.384, traction = 1e12 }"#,
-        ],
-        reference: 158_110.737_055_827_04,
-        ..REMEMBERING
-    },
-    Case {
-        id: "paste_chain_just_stable",
-        what: "the same of pastes that do not flow",
-        settings: &[
-            r#"parameters.chain={ name = "bingham", stiffness = 1069547.52, viscosity = 100, traction = 1e12, compression = 1e12 }"#,
-        ],
-        reference: -2.940_971_650_302_621,
-        ..REMEMBERING
-    },
-    Case {
-        id: "paste_chain_just_unstable",
-        what: "the same at 1.0215",
-        settings: &[
-            r#"parameters.chain={ name = "bingham", stiffness = 1071120.384, viscosity = 100, traction = 1e12, compression = 1e12 }"#,
-        ],
-        reference: 158_110.737_055_827_04,
-        ..REMEMBERING
-    },
-    Case {
-        id: "compiled_chain_just_stable",
-        capabilities: &["JIM-94", "JIM-55"],
-        what: "a mass of the chain of Burger's links as a network of springs and dampers after 200 steps, H(-1) at 0.998 of its limit",
-        settings: &[
-            r#"parameters.chain={ name = "rheological", network = "((spring(5e5) | damper(1000)) - spring(1e6) - damper(3000)) | spring(425122)" }"#,
-        ],
-        reference: 2.425_654_436_626_984e-3,
-        // the elements of the network are solved for as numbers, the law by its polynomials: they part by 1e-6
-        tolerance: Tolerance::Relative(1e-5),
-        ..REMEMBERING
-    },
-    Case {
-        id: "compiled_chain_just_unstable",
-        capabilities: &["JIM-94", "JIM-55"],
-        what: "the same at 1.002",
-        settings: &[
-            r#"parameters.chain={ name = "rheological", network = "((spring(5e5) | damper(1000)) - spring(1e6) - damper(3000)) | spring(429395)" }"#,
-        ],
-        reference: 12.031_078_255_678_48,
-        tolerance: Tolerance::Relative(1e-5),
-        ..REMEMBERING
     },
     Case {
         id: "thrown_momentum",
@@ -902,74 +488,6 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(1e-13),
         source: "EXP-52: axial forces keep Σ M X_n ∧ X_{n+1}, whatever the law (specification §2.5)",
         mutation: NANONEWTON,
-        ..OSCILLATOR
-    },
-    Case {
-        id: "sliding_distance_fast",
-        capabilities: &["JIM-45"],
-        what: "way of a mass at 4 m/s till it stops, v²/(2 μ g)",
-        scene: "network_friction",
-        settings: &["networks.table.masses.book.velocity=[4, 0, 0]"],
-        reading: Reading::component("place", 0),
-        reference: 2.038_735_983_690_112,
-        tolerance: Tolerance::Relative(1e-2),
-        source: "EXP-38: within 1 %",
-        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "sliding_slows_down",
-        capabilities: &["JIM-45"],
-        what: "speed of a mass that began at 2 m/s, ten milliseconds before it stops: v - μ g t after half a second",
-        scene: "network_friction",
-        reading: Reading::component("speed", 0).after(50),
-        reference: 0.038,
-        // friction is F v/(v + V_s) below a few V_s, 5 mm/s, and the first of 500 steps is one too many: 4e-3 m/s
-        tolerance: Tolerance::Absolute(4e-3),
-        source: "EXP-38: stops after v/(μ g) (specification §2.14.5)",
-        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "sliding_has_stopped",
-        capabilities: &["JIM-45", "JIM-46"],
-        what: "speed of the same 20 ms after v/(μ g): less than V_s, where the hook has it",
-        scene: "network_friction",
-        reading: Reading::component("speed", 0).after(53),
-        reference: 0.0,
-        // V_s
-        tolerance: Tolerance::Absolute(5e-3),
-        source: "EXP-38: stops after v/(μ g) (specification §2.14.5)",
-        mutation: "networks.table.crowds[0].friction.kinetic=0.38",
-        ..OSCILLATOR
-    },
-    Case {
-        id: "friction_holds_sudden",
-        capabilities: &["JIM-46", "JIM-47"],
-        what: "way of a mass under gravity that leans to tan θ = 0.2 at once: it sticks, by F_t/K_t",
-        scene: "network_friction",
-        settings: &[STILL, r#"world.gravity=["9.81 * 0.2", 0, -9.81]"#],
-        reading: Reading::component("place", 0),
-        reference: 1.962e-5,
-        // N/(K R)
-        tolerance: Tolerance::Relative(2e-8),
-        source: "EXP-38: with a sudden load sticks at 0.2 (specification §2.14.5)",
-        mutation: r#"world.gravity=["9.81 * 0.5", 0, -9.81]"#,
-        ..OSCILLATOR
-    },
-    Case {
-        id: "friction_slides_sudden",
-        capabilities: &["JIM-46", "JIM-47"],
-        what: "way of the same at tan θ = 0.5: what swings on the hook goes beyond the static coefficient, 0.6, and it slides at g (0.5 - 0.4) for two seconds",
-        scene: "network_friction",
-        settings: &[STILL, r#"world.gravity=["9.81 * 0.5", 0, -9.81]"#],
-        reading: Reading::component("place", 0),
-        // 0.981 2²/2
-        reference: 1.962,
-        // V_s while it comes to speed
-        tolerance: Tolerance::Relative(1e-2),
-        source: "EXP-38: with a sudden load slides at 0.5 (specification §2.14.5)",
-        mutation: r#"world.gravity=["9.81 * 0.2", 0, -9.81]"#,
         ..OSCILLATOR
     },
     Case {
