@@ -110,6 +110,8 @@ pub struct Evaluations {
 pub struct Census {
     /// Active points of each level, from coarse to fine.
     pub active: Vec<usize>,
+    /// Their rows, ascending.
+    pub active_rows: Vec<u32>,
     /// Points of each level that follow because a force or another ghost reads them.
     pub ghosts: Vec<usize>,
     /// Tetrahedra, or particles, of each level, whether at work or not.
@@ -201,6 +203,12 @@ pub trait Levels: Send + Sync {
 
     /// What a step so divided has to do with this memory; what a scratch knows of the same is not made anew.
     fn workload(&self, division: &Division, memory: &[f64], scratch: &Scratch) -> Evaluations;
+
+    /// Rows of active points, each with what its criterion compares with its thresholds, at the positions of all rows; nothing of bodies
+    /// that do not tell.
+    fn variation(&self, _positions: &[Vec3], _memory: &[f64], _scratch: &Scratch) -> Vec<(u32, f64)> {
+        Vec::new()
+    }
 
     /// Who does what, by the memory; likewise.
     fn census(&self, memory: &[f64], scratch: &Scratch) -> Census;

@@ -84,10 +84,20 @@ static EMULATED: Entry<ChooseDevice> = Entry {
             .or(Value::Number(50.0)),
         Parameter::number("delay", "s", Range::closed(1e-3, 1.0), "after which reflexes act")
             .or(Value::Number(0.06)),
-        Parameter::number("lost_at", "s", Range::NOT_NEGATIVE, "when the device is lost")
-            .or(Value::Number(0.0)),
-        Parameter::number("lost_for", "s", Range::NOT_NEGATIVE, "for how long it is lost")
-            .or(Value::Number(0.0)),
+        Parameter::number(
+            "lost_at",
+            "s",
+            Range::NOT_NEGATIVE,
+            "when the device is lost; 0 without `lost_for`: never",
+        )
+        .or(Value::Number(0.0)),
+        Parameter::number(
+            "lost_for",
+            "s",
+            Range::NOT_NEGATIVE,
+            "for how long it is lost; 0 with `lost_at`: to the end",
+        )
+        .or(Value::Number(0.0)),
     ],
     build: |values, intent| {
         DeviceChoice::Emulated(Arm {
@@ -96,11 +106,16 @@ static EMULATED: Entry<ChooseDevice> = Entry {
             damping: values.number("damping"),
             reflex: values.number("reflex"),
             delay: values.number("delay"),
-            lost: (values.number("lost_at"), values.number("lost_for")),
+            lost: lost(values.number("lost_at"), values.number("lost_for")),
             intent,
         })
     },
 };
+
+/// From when the device is lost, and for how long [s]: who says when alone means from then on.
+fn lost(at: f64, duration: f64) -> (f64, f64) {
+    (at, if at > 0.0 && duration == 0.0 { f64::INFINITY } else { duration })
+}
 
 static OSC: Entry<ChooseDevice> = Entry {
     name: "osc",

@@ -62,6 +62,7 @@ pub struct Tick {
     pub force: Vec3,
     /// [J]
     pub energy: f64,
+    pub is_lost: bool,
 }
 
 /// Where a device is.
@@ -245,7 +246,8 @@ impl Desk {
         wire.device.write(&[x, y, z, f64::from(u8::from(self.device.is_some())), clock]);
         if self.ticks.len() < self.ticks.capacity() {
             let PortState { force, energy, place, .. } = self.port;
-            self.ticks.push(Tick { time: now, device: place, tool: tool.place, force, energy });
+            let is_lost = self.device.is_none();
+            self.ticks.push(Tick { time: now, device: place, tool: tool.place, force, energy, is_lost });
         }
     }
 }

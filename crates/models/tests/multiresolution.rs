@@ -287,7 +287,7 @@ fn set_velocities(world: &mut World, velocity: impl Fn(Vec3) -> Vec3) {
 /// does not.
 #[test]
 fn the_transpose_keeps_momentum() {
-    let criterion = Criterion { measure: Measure::Jump, refine: 0.08, coarsen: 0.02 };
+    let criterion = Criterion { measure: Measure::Jump, refine: 0.08, coarsen: 0.02, settled: None };
     let velocity = |x: Vec3| Vec3::new(0.4 - 900.0 * x.z * x.y, 8.0 * x.x, 40.0 * x.x.abs());
     let drift = |coupling, choice| {
         let mut world = world(body(&balls(), coupling, choice), stepper(4, Filter::None), 4e-3, |_| false);
@@ -314,6 +314,67 @@ fn the_transpose_keeps_momentum() {
     assert!(one_way > 1e-4, "{one_way:e}");
 }
 
+/// What a body's own loads have made by the date at which it is settled does not refine it, what comes on top does, and goes again. Without
+/// that date the load alone refines it.
+#[test]
+fn own_loads_do_not_refine() {
+    let twist = |strength: f64| {
+        move |x: Vec3| {
+            let (s, c) = (strength * x.z).sin_cos();
+            Vec3::new(c * x.x - s * x.y, s * x.x + c * x.y, x.z)
+        }
+    };
+    let finest = |settled: Option<f64>| {
+        let criterion = Criterion { measure: Measure::Jump, refine: 0.05, coarsen: 0.0125, settled };
+        let mut body = Alone::new(body(&balls(), Coupling::Transpose, Choice::Adaptive(criterion)));
+        let mut counts = Vec::new();
+        // the load grows until it is settled at 0.1 s, then something is added, and taken away
+        for (time, strength) in [
+            (0.0, 0.0),
+            (0.05, 60.0),
+            (0.1, 60.0),
+            (0.2, 60.0),
+            (0.3, 140.0),
+            (0.4, 140.0),
+            (0.5, 60.0),
+            (0.6, 60.0),
+            (0.7, 60.0),
+        ] {
+            body.place(twist(strength));
+            body.rows.time = time;
+            body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+            counts.push(body.force.census(&body.memory, &body.scratch).active);
+        }
+        counts
+    };
+    let counts = finest(Some(0.1));
+    let (coarsest, all) = (&counts[3], &counts[1]);
+    assert_eq!(all[..2], [0, 0], "{counts:?}");
+    assert_eq!(coarsest[1..], [0, 0], "{counts:?}");
+    assert!(counts[5][2] > 100, "{counts:?}");
+    assert_eq!(counts[8], *coarsest, "{counts:?}");
+    let counts = finest(None);
+    assert!(counts[3][2] > 100 && counts[8][2] > 100, "{counts:?}");
+}
+
+/// What is told of the active points is what is compared: nothing of a twist at which the body has settled.
+#[test]
+fn the_variation_is_told() {
+    let criterion = Criterion { measure: Measure::Jump, refine: 1.0, coarsen: 0.1, settled: Some(0.1) };
+    let mut body = Alone::new(body(&balls(), Coupling::Transpose, Choice::Adaptive(criterion)));
+    let greatest = |body: &Alone| {
+        let told = body.force.variation(&body.rows.positions, &body.memory, &body.scratch);
+        assert_eq!(told.len(), body.force.census(&body.memory, &body.scratch).active_rows.len());
+        told.into_iter().map(|(_, variation)| variation).fold(0.0, f64::max)
+    };
+    body.place(|x| Vec3::new(x.x + 3.0 * x.z * x.z, x.y, x.z));
+    for (time, is_settled) in [(0.0, false), (0.1, true)] {
+        body.rows.time = time;
+        body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+        assert_eq!(greatest(&body) == 0.0, is_settled, "{time}");
+    }
+}
+
 /// DEB-12, 32: a twist refines; when it has gone the coarsest points are alone again, without a ghost.
 #[test]
 fn points_come_and_go() {
@@ -322,7 +383,7 @@ fn points_come_and_go() {
 }
 
 fn come_and_go(measure: Measure) {
-    let criterion = Criterion { measure, refine: 0.05, coarsen: 0.0125 };
+    let criterion = Criterion { measure, refine: 0.05, coarsen: 0.0125, settled: None };
     let force = body(&balls(), Coupling::Transpose, Choice::Adaptive(criterion));
     let mut body = Alone::new(force);
     let twist = |strength: f64| {
@@ -402,7 +463,7 @@ fn budgets_are_kept() {
     let meshes = balls();
     let all: Vec<&Mesh> = meshes.iter().collect();
     let spent = |budget: Option<f64>| {
-        let criterion = Criterion { measure: Measure::Jump, refine: 0.01, coarsen: 0.002 };
+        let criterion = Criterion { measure: Measure::Jump, refine: 0.01, coarsen: 0.002, settled: None };
         let force = LevelsForce::new(LevelsDescription {
             name: "ball.material".to_owned(),
             meshes: &all,

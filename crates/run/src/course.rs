@@ -14,6 +14,7 @@ use souple_table::counted;
 
 use crate::doubts;
 use crate::expect::Span;
+use crate::folds::{Fold, Folds, Look};
 use crate::frames::Frames;
 use crate::machine::peak_bytes;
 use crate::output::{OutputError, OutputFolder};
@@ -30,6 +31,7 @@ pub(crate) struct Course {
     pub folder: Option<OutputFolder>,
     pub frames: Frames,
     pub traces: Vec<Trace>,
+    pub folds: Folds,
 }
 
 /// What of a scene is looked at when its run is over.
@@ -100,7 +102,7 @@ impl Course {
         options: &Options,
         watch: &mut dyn FnMut(&Progress) -> Control,
     ) -> Result<Status, RunError> {
-        let Self { session, folder, frames, traces } = self;
+        let Self { session, folder, frames, traces, folds } = self;
         let period = session.world.model().period;
         let commands = commands_left(options, &session.world).peekable();
         let mut dues = Dues { commands, changes: options.changes.iter().peekable() };
@@ -121,6 +123,7 @@ impl Course {
                 }
             }
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+            folds.look(Look::Glance, &session.world, &session.bodies);
             // told when what there is has been written
             let watched = session.watch_energy();
             let last = step == steps;
@@ -156,7 +159,7 @@ impl Course {
 
     /// The report, written with tables and pictures where the run has a folder.
     fn conclude(&mut self, status: Status, aims: &Aims) -> Report {
-        let Self { session, folder, traces, frames } = self;
+        let Self { session, folder, traces, frames, folds } = self;
         let drawable = folder.as_ref().and_then(|_| frames.drawable(session));
         if let Some(moment) = &drawable
             && moment.time < session.world.time()
@@ -185,7 +188,9 @@ impl Course {
             sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
         session.warnings.extend(doubts::of_traces(traces));
-        session.warnings.extend(doubts::of_bodies(session));
+        folds.look(Look::Close, &session.world, &session.bodies);
+        let folds = std::mem::take(folds).into_found();
+        session.warnings.extend(folds.iter().map(Fold::message));
         if session.solver.shortened > 0 {
             session.warnings.push(format!(
                 "{} of one linearised solve went up in potential and {} taken in part, which costs momentum and energy: take shorter steps, or \
@@ -198,6 +203,7 @@ impl Course {
             probes: traces.iter().map(Trace::summary).collect(),
             sounds: sounds.iter().flatten().map(|sound| sound.summary().clone()).collect(),
             expectations: aims.expects.iter().map(|expect| Verdict::of(expect, traces, &span)).collect(),
+            folds,
             ..session.report(status)
         };
         let Some(folder) = folder else { return report };

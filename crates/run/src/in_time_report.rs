@@ -44,13 +44,25 @@ fn of_ages(ages: &Histogram) -> Value {
     })
 }
 
-fn of_hand(ticks: &[Tick], jump: f64, refused: u64, ages: &Ages) -> Value {
+/// Less than the limit by this part, a force is at it: it is the length of a vector that was shortened to it.
+const AT_LIMIT: f64 = 1e-9;
+
+/// `limit`: of the force [N].
+fn of_hand(ticks: &[Tick], limit: f64, jump: f64, refused: u64, ages: &Ages) -> Value {
+    let share = |counts: &dyn Fn(&&Tick) -> bool| {
+        ticks.iter().filter(counts).count() as f64 / ticks.len().max(1) as f64
+    };
+    let first_lost = ticks.iter().find(|tick| tick.is_lost).map(|tick| tick.time);
     let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
     let least_energy = ticks.iter().map(|tick| tick.energy).fold(0.0, f64::min);
     json!({
         "ticks": ticks.len(),
         "greatest_force_n": greatest,
         "greatest_jump_n": jump,
+        "limit_n": limit,
+        "share_at_limit": share(&|tick| tick.force.length() >= limit * (1.0 - AT_LIMIT)),
+        "share_lost": share(&|tick| tick.is_lost),
+        "first_lost_seconds": first_lost,
         "least_energy_j": least_energy,
         "energy_j": ticks.last().map_or(0.0, |tick| tick.energy),
         "refused": refused,
@@ -70,8 +82,10 @@ impl InTime {
         let computing = (loads.iter().sum::<f64>() * period).max(f64::MIN_POSITIVE);
         let served = &self.served;
         let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused).zip(&served.ages);
-        let felt = felt.map(|(((ticks, port), refused), ages)| of_hand(ticks, port.jump, *refused, ages));
-        let hands = session.hands.iter().map(|hand| hand.name.clone()).zip(felt);
+        let hands = session.hands.iter().zip(felt).map(|(hand, (((ticks, port), refused), ages))| {
+            let limit = hand.port.coupling.limit;
+            (hand.name.clone(), of_hand(ticks, limit, port.jump, *refused, ages))
+        });
         let status = match &session.failure {
             Some(_) => "failed",
             None if self.was_stopped => "interrupted",

@@ -9,6 +9,7 @@ mod doubts;
 mod duration;
 mod expect;
 mod failure;
+mod folds;
 mod frames;
 mod frequencies;
 mod governor;
@@ -44,6 +45,7 @@ pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
 pub use expect::{Finding, Verdict, summary};
 pub use failure::{Cause, Failure, Part, Spot};
+pub use folds::Fold;
 pub use frames::solid_of;
 pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
 pub use governor::Governor;
@@ -58,7 +60,7 @@ pub use session::{Change, ChangeError, Session, Stepped, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use souple_haptics::Histogram;
 pub use timeline::write_timeline;
-pub use trace::{Trace, write_csv};
+pub use trace::{Summary, Trace, write_csv};
 
 use output::{OutputFolder, Plan};
 
@@ -191,7 +193,8 @@ pub fn run(
     let folder = output_folder(options, &session, &aims.sounds, first_step)?;
     let traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     let frames = frames::Frames::open(folder.as_ref(), &session, frame_count, steps)?;
-    Ok(course::Course { session, folder, frames, traces }.run(steps, options, &aims, watch))
+    Ok(course::Course { session, folder, frames, traces, folds: folds::Folds::default() }
+        .run(steps, options, &aims, watch))
 }
 
 fn snapshot_name(period: u64) -> String {

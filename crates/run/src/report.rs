@@ -10,6 +10,7 @@ use souple_scene::{BodyInfo, SkinInfo};
 
 use crate::expect::summary;
 use crate::failure::Failure;
+use crate::folds::{self, Fold};
 use crate::machine::{binary, instruction_set};
 use crate::output::{OutputError, OutputFolder};
 use crate::sound::SoundSummary;
@@ -72,6 +73,8 @@ pub struct Report {
     pub probes: Vec<Summary>,
     /// Those that were written.
     pub sounds: Vec<SoundSummary>,
+    /// Of bodies that were inside out somewhere.
+    pub folds: Vec<Fold>,
     pub hashes: Vec<(u64, String)>,
     pub expectations: Vec<Verdict>,
     /// Why the run ended early, where it failed.
@@ -150,6 +153,7 @@ impl Report {
             },
             "probes": probes,
             "sounds": self.sounds.iter().map(SoundSummary::to_json).collect::<serde_json::Map<_, _>>(),
+            "inside_out": folds::to_json(&self.folds),
             "hashes": hashes,
             "expectations": self.expectations.iter().map(Verdict::to_json).collect::<Vec<_>>(),
             "error": self.failure.as_ref().map(Failure::to_json),
@@ -181,6 +185,8 @@ fn probe_to_json(probe: &Summary) -> (String, Value) {
         "last": value(&probe.last),
         "min": value(&probe.min),
         "max": value(&probe.max),
+        "min_at": value(&probe.min_at),
+        "max_at": value(&probe.max_at),
         "frequency": match probe.frequency.as_slice() {
             [single] => json!(single),
             several => json!(several),

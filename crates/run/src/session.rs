@@ -361,6 +361,7 @@ impl Session {
             solver_bytes: self.held.max(self.world.bytes()),
             probes: Vec::new(),
             sounds: Vec::new(),
+            folds: Vec::new(),
             hashes: hashes.into_iter().map(|hashed| (hashed.period, hashed.fingerprint.hash)).collect(),
             expectations: Vec::new(),
             failure: self.failure.clone(),

@@ -34,6 +34,11 @@ pub struct Summary {
     pub last: Vec<f64>,
     pub min: Vec<f64>,
     pub max: Vec<f64>,
+    /// When these were met first [s].
+    pub min_at: Vec<f64>,
+    pub max_at: Vec<f64>,
+    /// Of vectors, the greatest length and when it was met first [s].
+    pub longest: Option<(f64, f64)>,
     /// The strongest frequency of each [Hz]; `None` of what does not swing.
     pub frequency: Vec<Option<f64>>,
 }
@@ -78,21 +83,38 @@ impl Trace {
         // dates are products of counts and periods, right to a rounding; of a run that ends before that date, the last one
         let early = self.times.iter().take_while(|time| **time < self.since * (1.0 - 1e-12)).count();
         let first = early.min(self.times.len().saturating_sub(1));
-        let counted = &self.values[first * self.components..];
+        let counted =
+            || self.times[first..].iter().zip(self.values[first * self.components..].chunks(self.components));
         // a value that is not a number is not passed over
-        let pick = |fold: fn(f64, f64) -> f64, start: f64| -> Vec<f64> {
-            let keep = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { fold(a, b) };
-            (0..self.components)
-                .map(|c| counted.iter().skip(c).step_by(self.components).fold(start, |a, b| keep(a, *b)))
-                .collect()
+        let keep = |best: (f64, f64), (value, time): (f64, f64), is_better: fn(f64, f64) -> bool| {
+            if !best.0.is_nan() && (value.is_nan() || is_better(value, best.0)) {
+                (value, time)
+            } else {
+                best
+            }
         };
+        let pick = |is_better: fn(f64, f64) -> bool, start: f64| -> (Vec<f64>, Vec<f64>) {
+            let of = |c: usize| {
+                let values = counted().map(|(time, values)| (values[c], *time));
+                values.fold((start, 0.0), |best, value| keep(best, value, is_better))
+            };
+            (0..self.components).map(of).unzip()
+        };
+        let (min, min_at) = pick(|a, b| a < b, f64::INFINITY);
+        let (max, max_at) = pick(|a, b| a > b, f64::NEG_INFINITY);
+        let length = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
+        let lengths = counted().map(|(time, values)| (length(values), *time));
+        let longest = lengths.fold((0.0, 0.0), |best, value| keep(best, value, |a, b| a > b));
         Summary {
             name: self.name.clone(),
             unit: self.unit,
             first: self.value(0).map(<[f64]>::to_vec).unwrap_or_default(),
             last: self.last().map(<[f64]>::to_vec).unwrap_or_default(),
-            min: pick(f64::min, f64::INFINITY),
-            max: pick(f64::max, f64::NEG_INFINITY),
+            min,
+            max,
+            min_at,
+            max_at,
+            longest: (self.components > 1).then_some(longest),
             frequency: self.frequencies(),
         }
     }

@@ -394,6 +394,14 @@ pub fn census(world: &World, system: usize, force: &str) -> Option<Census> {
     Some(levels.census(&world.state().systems[system].memory[memory], world.scratch(system, index)))
 }
 
+/// Rows of the active points of the body of a force, each with what its criterion compares with its thresholds; none where it has no levels.
+pub(crate) fn variation(world: &World, system: usize, force: &str) -> Vec<(u32, f64)> {
+    let Some((index, levels)) = levels(world, system, force) else { return Vec::new() };
+    let memory = world.model().systems[system].memory_ranges()[index].clone();
+    let memory = &world.state().systems[system].memory[memory];
+    levels.variation(&world.rows(system).positions, memory, world.scratch(system, index))
+}
+
 /// What a step of the body of a force has to do with the points that are active; `None` where it has no levels.
 pub(crate) fn workload(world: &World, system: usize, force: &str) -> Option<Workload> {
     let of = &world.model().systems[system];

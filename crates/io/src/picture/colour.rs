@@ -16,8 +16,8 @@ impl Colour {
     }
 
     /// From the numbers of a screen, as in `#c8705a`.
-    pub fn from_screen([red, green, blue]: [u8; 3]) -> Self {
-        Self([red, green, blue].map(|value| linear_from_screen(f64::from(value) / 255.0) as f32))
+    pub fn from_screen(colour: [u8; 3]) -> Self {
+        Self(colour.map(|value| LINEAR[usize::from(value)]))
     }
 
     /// `self + (other - self) amount`
@@ -75,6 +75,10 @@ static SCREEN: LazyLock<Vec<u8>> = LazyLock::new(|| {
     const STEPS: usize = 1 << 14;
     (0..=STEPS).map(|step| (255.0 * screen_from_linear(step as f64 / STEPS as f64)).round() as u8).collect()
 });
+
+/// Linear light of the numbers of a screen: maps and textures ask at every sample of a picture.
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|value| linear_from_screen(value as f64 / 255.0) as f32));
 
 #[cfg(test)]
 mod tests {

@@ -7,7 +7,7 @@ use souple_math::Vec3;
 use super::elastic::Values;
 use super::lists::Work;
 use super::roles::Role;
-use super::{Choice, Coupling, LEAST_MASS, LevelsForce};
+use super::{Choice, Coupling, Criterion, LEAST_MASS, LevelsForce};
 use crate::solids::sample_law::Answer;
 
 /// Part of the budget above which nothing is subdivided.
@@ -31,12 +31,42 @@ impl LevelsForce {
                     }
                 }
             }
-            Choice::Adaptive(_) => self.follow_criterion(division, positions, memory, work),
+            Choice::Adaptive(criterion) if criterion.settled.is_some_and(|date| rows.time < date) => {
+                let coarser = self.hierarchy.levels[..self.hierarchy.finest()].iter().flat_map(Clone::clone);
+                coarser.for_each(|point| self.subdivide(memory, point, true));
+            }
+            Choice::Adaptive(criterion) => {
+                self.take_reference(criterion, positions, memory);
+                self.follow_criterion(division, positions, memory, work);
+            }
         }
         if self.coupling == Coupling::Transpose {
             self.give_up_empty_points(memory, work);
         }
         work.refresh(self, memory);
+    }
+
+    /// Notes the variation that the body's own loads make, once: of every point in its own mesh, where the finest is at work.
+    fn take_reference(&self, criterion: &Criterion, positions: &[Vec3], memory: &mut [f64]) {
+        let [is_taken, references @ ..] = &mut memory[self.references()..] else { return };
+        if std::mem::replace(is_taken, 1.0) != 0.0 {
+            return;
+        }
+        for (point, reference) in references.iter_mut().enumerate() {
+            *reference = criterion.measure.at(&self.hierarchy, point, positions);
+        }
+    }
+
+    /// The variation around a point that is compared with thresholds.
+    pub(super) fn counted_variation(
+        &self,
+        criterion: &Criterion,
+        point: usize,
+        positions: &[Vec3],
+        memory: &[f64],
+    ) -> f64 {
+        let reference = memory.get(self.references() + 1 + point).copied().unwrap_or(0.0);
+        (criterion.measure.at(&self.hierarchy, point, positions) - reference).max(0.0)
     }
 
     fn follow_criterion(&self, division: &Division, positions: &[Vec3], memory: &mut [f64], work: &mut Work) {
@@ -47,7 +77,7 @@ impl LevelsForce {
         variation.resize(hierarchy.point_count(), 0.0);
         for point in &work.active {
             let point = *point as usize;
-            variation[point] = criterion.measure.at(hierarchy, point, positions);
+            variation[point] = self.counted_variation(criterion, point, positions, memory);
         }
         // what is wanted most comes first; equal ones by number
         let (mut wanted, mut unwanted) =
@@ -123,7 +153,7 @@ impl LevelsForce {
     }
 
     /// A point whose matter finer points stand for has nothing to move: it is subdivided too.
-    fn give_up_empty_points(&self, memory: &mut [f64], work: &mut Work) {
+    pub(super) fn give_up_empty_points(&self, memory: &mut [f64], work: &mut Work) {
         loop {
             work.refresh(self, memory);
             let is_empty = |point: &&u32| {
@@ -181,7 +211,9 @@ impl LevelsForce {
         let positions = &mut rows.positions[self.rows()];
         self.place(work, Followers::All, Kinematic::Position, positions);
         let moves = positions.iter().zip(&work.followed).map(|(after, before)| *after - *before);
-        for (sum, step) in memory[self.moved()..].as_chunks_mut::<3>().0.iter_mut().zip(moves) {
+        for (sum, step) in
+            memory[self.moved()..self.references()].as_chunks_mut::<3>().0.iter_mut().zip(moves)
+        {
             *sum = (Vec3::from_array(*sum) + step).to_array();
         }
     }

@@ -25,6 +25,9 @@ pub struct Criterion {
     pub refine: f64,
     /// Points that are all below this make place for the coarser one; at most half of `refine`, so that none comes and goes.
     pub coarsen: f64,
+    /// Date until which the finest mesh alone is at work [s]; from then on the variation that a point has there counts as none.
+    /// `None`: all of it counts, from the start.
+    pub settled: Option<f64>,
 }
 
 impl Criterion {

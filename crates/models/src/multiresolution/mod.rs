@@ -198,12 +198,22 @@ impl LevelsForce {
         self.shortest_interval
     }
 
-    /// Stresses that a step so divided evaluates with the coarsest mesh alone at work: no budget comes to less.
-    pub fn least_evaluations(&self, division: &Division) -> usize {
+    /// Stresses that a step so divided evaluates with the coarsest mesh at work wherever so many cuts let it: no budget comes to less.
+    pub fn least_evaluations(&self, division: &Division, cuts: usize) -> usize {
         let mut work = Work::new(self);
-        work.refresh(self, &vec![0.0; self.memory_len()]);
+        let mut memory = vec![0.0; self.memory_len()];
+        memory[self.cuts_made()] = cuts as f64;
+        if self.coupling == Coupling::Transpose {
+            self.give_up_empty_points(&mut memory, &mut work);
+        }
+        work.refresh(self, &memory);
         work.divide(self, division);
         work.evaluations(division)
+    }
+
+    /// How many cuts are ever made.
+    pub fn cut_count(&self) -> usize {
+        self.cuts.by(f64::INFINITY)
     }
 
     /// The masses of the points of the finest mesh [kg].
@@ -302,6 +312,11 @@ impl LevelsForce {
         self.urges() + self.hierarchy.point_count()
     }
 
+    /// Where memory keeps, of a criterion with a date, whether the variation at that date is taken, and that of each point.
+    fn references(&self) -> usize {
+        self.moved() + 3 * self.hierarchy.point_count()
+    }
+
     /// Values of this body's points among those on rows.
     fn own<'a>(&self, values: &'a [Vec3]) -> &'a [Vec3] {
         &values[self.rows()]
@@ -375,9 +390,10 @@ impl Force for LevelsForce {
     }
 
     /// Which points are subdivided, for how many steps the budget has been overdrawn, how many cuts are made; then how long points stay,
-    /// the rates that their velocities ask for, and how far others coming to be at work have moved them.
+    /// the rates that their velocities ask for, how far others coming to be at work have moved them, and the variation that does not count.
     fn memory_len(&self) -> usize {
-        self.moved() + 3 * self.hierarchy.point_count()
+        let settles = matches!(self.choice, Choice::Adaptive(Criterion { settled: Some(_), .. }));
+        self.references() + if settles { 1 + self.hierarchy.point_count() } else { 0 }
     }
 
     fn new_scratch(&self) -> Scratch {
@@ -540,6 +556,7 @@ impl LevelsForce {
         }
         Census {
             active: count(&|point| work.roles.is_active(point)),
+            active_rows: work.active_rows.clone(),
             ghosts: count(&|point| ghosts[point]),
             cells: hierarchy.tets_of_level.iter().map(Range::len).collect(),
             toggling: stays::rate(&memory[self.stays()..self.urges()]),

@@ -9,7 +9,7 @@ use souple_math::Vec3;
 use super::elastic::Values;
 use super::links::Loops;
 use super::lists::Work;
-use super::{Coupling, LevelsForce};
+use super::{Choice, Coupling, LevelsForce};
 use crate::solids::sample_law::Answer;
 use crate::stays;
 
@@ -115,7 +115,13 @@ impl Levels for LevelsForce {
         self.urge(division, rows, memory, work);
         work.divide(self, division);
         work.moved.clear();
-        work.moved.extend(memory[self.moved()..].as_chunks::<3>().0.iter().map(|sum| Vec3::from_array(*sum)));
+        work.moved.extend(
+            memory[self.moved()..self.references()]
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|sum| Vec3::from_array(*sum)),
+        );
     }
 
     fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32] {
@@ -252,6 +258,23 @@ impl Levels for LevelsForce {
         work.refresh(self, memory);
         work.divide(self, division);
         count(&work)
+    }
+
+    fn variation(&self, positions: &[Vec3], memory: &[f64], scratch: &Scratch) -> Vec<(u32, f64)> {
+        let Choice::Adaptive(criterion) = &self.choice else { return Vec::new() };
+        let known = read(scratch);
+        let mut anew = Work::new(self);
+        let work = if known.is_of(self, memory) {
+            known
+        } else {
+            anew.refresh(self, memory);
+            &anew
+        };
+        let own = self.own(positions);
+        let of = |point: &u32| {
+            (self.first_row as u32 + point, self.counted_variation(criterion, *point as usize, own, memory))
+        };
+        work.active.iter().map(of).collect()
     }
 
     fn census(&self, memory: &[f64], scratch: &Scratch) -> Census {

@@ -260,9 +260,19 @@ impl Figure {
         }
     }
 
-    /// Whether a body is not seen, as the skin that it wears is.
+    /// Whether a body is not seen, as the skin that it wears is; or one of the two, as the other is in the colours that are asked for.
     pub fn hides(&self, moment: &Moment, body: &BodyMoment) -> bool {
-        self.worn == Worn::Arrows && moment.wears_skin(body)
+        if self.worn == Worn::Arrows {
+            return moment.skin_of(body).is_some();
+        }
+        let looks_inside = self.cut.is_some() || self.explode > 0.0 || self.shrink > 0.0;
+        let Some(quantity) = self.quantity().filter(|_| !looks_inside) else { return false };
+        match (moment.skin_of(body), moment.wearer_of(body)) {
+            // where both have it the edges of one would come through the other
+            (Some(skin), _) => quantity.is_of(skin),
+            (None, Some(wearer)) => quantity.is_of(wearer) && !quantity.is_of(body),
+            (None, None) => false,
+        }
     }
 
     /// Whether a point is not cut away.

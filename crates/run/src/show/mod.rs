@@ -234,10 +234,15 @@ impl Moment {
         Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).chain(outlines).collect() }
     }
 
-    /// Whether a body wears one of the skins.
-    pub fn wears_skin(&self, body: &BodyMoment) -> bool {
+    /// The skin or the dress that a body wears.
+    pub(super) fn skin_of(&self, body: &BodyMoment) -> Option<&BodyMoment> {
         let skin = crate::frames::worn_by(&body.name);
-        self.bodies.iter().any(|other| other.name == skin)
+        self.bodies.iter().find(|other| other.name == skin)
+    }
+
+    /// The body that wears one as its skin.
+    pub(super) fn wearer_of(&self, skin: &BodyMoment) -> Option<&BodyMoment> {
+        self.bodies.iter().find(|other| crate::frames::worn_by(&other.name) == skin.name)
     }
 
     /// The faces of bodies in a network.

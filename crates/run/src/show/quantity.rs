@@ -3,6 +3,7 @@
 use souple_io::Field;
 use souple_io::picture::{ColourMap, ELEMENT_KINDS};
 use souple_mesh::ElementKind;
+use souple_table::nearest;
 
 use super::{BodyMoment, Moment, ShowError};
 
@@ -80,6 +81,11 @@ impl<'a> Quantity<'a> {
     /// Whether it is how bodies look, with all that lies on them.
     pub fn is_look(&self) -> bool {
         self.field == TISSUE
+    }
+
+    /// Whether a body has the field that it is of.
+    pub fn is_of(&self, body: &BodyMoment) -> bool {
+        body.has_field(self.field)
     }
 
     /// A value for each point of a body; `None` where it has no such field.
@@ -168,7 +174,11 @@ impl<'a> Quantity<'a> {
         let expected = if known.is_empty() {
             "element or none: no body has fields".to_owned()
         } else {
-            format!("one of {}, element, none", known.join(", "))
+            let fields =
+                moment.bodies.iter().flat_map(|body| body.point_fields.iter().chain(&body.cell_fields));
+            let near = nearest(self.field, fields.map(|field| field.name.as_str()));
+            let meant = near.map_or_else(String::new, |near| format!("`{near}`, which is near to that, or "));
+            format!("{meant}one of {}, element, none", known.join(", "))
         };
         Err(ShowError::UnknownField { name, expected })
     }

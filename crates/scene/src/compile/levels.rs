@@ -7,10 +7,10 @@ use souple_engine::levels::{Division, Pace};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
-use souple_mesh::{Mesh, OpeningSurface};
+use souple_mesh::{BoundingBox, Mesh, OpeningSurface};
 use souple_models::multiresolution::{Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
-use souple_table::Value;
+use souple_table::{Value, four_digits};
 
 use super::bodies::{BodyMaterials, Placed, solid_name};
 use super::{Draft, shape};
@@ -147,7 +147,7 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
     match LevelsForce::new(description) {
         Ok(force) => {
             check_fixed(draft, &spec.site, spec.fixed.as_ref(), &force.hierarchy().rest, meshes.len());
-            check_steps(draft, system, spec, &force);
+            check_steps(draft, system, body.spec, spec, &force);
             Some(Box::new(force))
         }
         Err(error) => {
@@ -204,7 +204,7 @@ pub(super) fn check_fixed(
 }
 
 /// Whether the shortest interval of the stepper is short enough, and its filter one for this coupling.
-fn check_steps(draft: &Draft, system: &SystemSpec, spec: &LevelsSpec, force: &LevelsForce) {
+fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpec, force: &LevelsForce) {
     let Some(stepper) = &system.stepper else { return };
     let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return };
     let step = draft.spec.world.period / f64::from(system.steps_per_period);
@@ -212,8 +212,22 @@ fn check_steps(draft: &Draft, system: &SystemSpec, spec: &LevelsSpec, force: &Le
     if tick > needed {
         let enough = (step / needed).log2().ceil();
         let message = format!("the shortest interval is {tick:.3e} s, and some points need {needed:.3e} s");
-        let expected = format!("halvings = {enough}, or a shorter period");
-        draft.log.add(Code::Conflict, stepper.site_of("halvings"), message, expected);
+        let halvings = stepper.entry.parameters.iter().find(|parameter| parameter.name == "halvings");
+        let most = halvings.map_or(f64::INFINITY, |parameter| parameter.range.high);
+        // no number of halvings would do
+        let modulus = body.material.as_ref().filter(|_| enough > most);
+        let (site, expected) = match modulus {
+            Some(material) => (
+                material.site_of("youngs_modulus"),
+                format!(
+                    "a softer or denser material (is its unit right?), larger cells, or a step of {:.1e} s at most: it is {step:.1e} s, and is halved {most} times \
+                     at most",
+                    needed * most.exp2()
+                ),
+            ),
+            None => (stepper.site_of("halvings"), format!("halvings = {enough}, or a shorter period")),
+        };
+        draft.log.add(Code::Conflict, site, message, expected);
     }
     if stepper.values.boolean("semi_implicit") && spec.coupling == Coupling::Transpose {
         let message = "semi-implicit points brake all motion, and this coupling keeps its momentum";
@@ -240,12 +254,21 @@ pub fn warn_of_budgets(draft: &mut Draft) {
         if stepper.values.number("velocity_jump") > 0.0 {
             division.velocity_jump = stepper.values.number("velocity_jump");
         }
-        let least = force.least_evaluations(&division);
-        (budget < least as f64).then(|| {
-            format!(
+        let least = force.least_evaluations(&division, 0);
+        if budget < least as f64 {
+            return Some(format!(
                 "{}: a step of body `{}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
                  stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
                  `ratio`) or fewer `halvings` would need less",
+                draft.place(&spec.site),
+                body.spec.name
+            ));
+        }
+        let beside_cuts = force.least_evaluations(&division, force.cut_count());
+        (budget < beside_cuts as f64).then(|| {
+            format!(
+                "{}: a step of body `{}` evaluates {beside_cuts} stresses once all of its cuts are made, whatever its budget of {budget} says: where a cut runs \
+                 the finest mesh is at work; against the clock the world may come late; a larger budget, a smaller cut or fewer `halvings` would fit",
                 draft.place(&spec.site),
                 body.spec.name
             )
@@ -277,6 +300,8 @@ pub fn warn_of_cuts(draft: &mut Draft) {
 pub fn add_dresses(draft: &mut Draft) {
     let made: Vec<(String, Dress)> =
         draft.bodies.iter().filter_map(|body| Some((body.spec.name.clone(), dress(draft, body)?))).collect();
+    let misfits: Vec<String> = made.iter().filter_map(|(body, dress)| misfit(draft, body, dress)).collect();
+    draft.warnings.extend(misfits);
     for (body, dress) in made {
         // all meshes stand at rest before a motion of the start moves them as one
         let info = DressInfo { body, field: draft.model.fields.len(), dress: Arc::new(dress), marks: None };
@@ -284,6 +309,30 @@ pub fn add_dresses(draft: &mut Draft) {
         draft.model.fields.push(Box::new(Worn(Arc::clone(&info.dress))));
         draft.dresses.push(info);
     }
+}
+
+/// The diagonals of a body and of its dress differ by no more than this factor, unless one is in other units or of another thing.
+const MISFIT: f64 = 1.5;
+
+/// Says where a dress is of another size than its body, or beside it: it would follow all the same, by extrapolation.
+fn misfit(draft: &Draft, body: &str, dress: &Dress) -> Option<String> {
+    let placed = draft.body(body)?;
+    let spec = placed.spec.levels.as_ref()?.dress.as_ref()?;
+    let worn = BoundingBox::of(dress.rest().iter().copied());
+    let own = placed.mesh.bounds();
+    let [size, wanted] = [worn, own].map(BoundingBox::diagonal);
+    let apart = (worn.centre() - own.centre()).length();
+    let fits = size < MISFIT * wanted && wanted < MISFIT * size && apart < 0.5 * wanted;
+    (!fits).then(|| {
+        format!(
+            "{}: the dress of body `{body}` is {} m across, its middle {} m beside that of the body, which is {} m across: it is hardly its surface; is its \
+             `scale` right?",
+            draft.place(&spec.site),
+            four_digits(size),
+            four_digits(apart),
+            four_digits(wanted)
+        )
+    })
 }
 
 fn dress(draft: &Draft, body: &Placed) -> Option<Dress> {

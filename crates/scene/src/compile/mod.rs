@@ -35,6 +35,7 @@ mod skins;
 mod start;
 mod texture;
 mod tissue;
+mod tool_doubts;
 
 pub(crate) use bodies::{BodyMaterials, Placed, solid_name};
 pub(crate) use boundary::constant_vector;
@@ -188,6 +189,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     depth::warn(&mut draft);
+    tool_doubts::warn(&mut draft);
     let contours = network::contours(&draft);
     if !log.is_empty() {
         return None;

@@ -14,6 +14,7 @@ use super::reduced::PlacedReduced;
 use super::{Draft, bones, frames, hanging};
 use crate::diagnostic::Code;
 use crate::spec::boundary::{MotionSpec, Pin};
+use crate::spec::region::RegionKind;
 
 /// What holds one point, axis by axis.
 #[derive(Clone, Debug, Default)]
@@ -259,6 +260,7 @@ pub fn warn_of_idle(draft: &mut Draft) {
     let mut warnings = Vec::new();
     for body in &draft.bodies {
         let held = held_points(draft, body);
+        warnings.extend(nearly_all(draft, body, &held));
         for load in &body.spec.loads {
             let Some(region) = &load.region else { continue };
             let points = draft.selector(body).points(region);
@@ -304,6 +306,27 @@ pub fn warn_of_idle(draft: &mut Draft) {
         }
     }
     draft.warnings.extend(warnings);
+}
+
+/// A body with so large a part of its points pinned hardly moves: a region may be in other units than it.
+const NEARLY_ALL: f64 = 0.9;
+
+/// Says where a solid is pinned nearly whole, and no pin says that it is of all of it.
+fn nearly_all(draft: &Draft, body: &Placed, held: &[bool]) -> Option<String> {
+    let is_meant =
+        |pin: &Pin| pin.region.as_ref().is_some_and(|region| matches!(region.kind, RegionKind::All));
+    if body.spec.material.is_none() || body.spec.pins.iter().any(is_meant) {
+        return None;
+    }
+    let pin = body.spec.pins.first()?;
+    let (count, all) = (held.iter().filter(|is_held| **is_held).count(), held.len());
+    (count as f64 > NEARLY_ALL * all as f64).then(|| {
+        format!(
+            "{}: {count} of the {all} points of body `{}` are pinned along all axes: next to nothing of it moves; are the region's lengths right?",
+            draft.place(&pin.site),
+            body.spec.name
+        )
+    })
 }
 
 /// Per point of a body: whether it is held along all axes.

@@ -5,7 +5,7 @@ use souple_engine::steppers::Schedule;
 use souple_engine::{Census, World};
 
 use super::LevelsPart;
-use crate::scene::{census, workload};
+use crate::scene::{census, variation, workload};
 use crate::spec::quantity::LevelsQuantity;
 
 pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f64 {
@@ -15,7 +15,14 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
         None => counts.iter().sum::<usize>() as f64,
     };
     match quantity {
-        LevelsQuantity::Active => census().map_or(0.0, |census| count(census.active)),
+        LevelsQuantity::Active => census().map_or(0.0, |census| {
+            census.active_rows.iter().filter(|row| part.rows.binary_search(row).is_ok()).count() as f64
+        }),
+        LevelsQuantity::Variation => variation(world, part.system, &part.force)
+            .into_iter()
+            .filter(|(row, _)| part.rows.binary_search(row).is_ok())
+            .map(|(_, variation)| variation)
+            .fold(0.0, f64::max),
         LevelsQuantity::Ghosts => census().map_or(0.0, |census| count(census.ghosts)),
         LevelsQuantity::Cells => census().map_or(0.0, |census| count(census.cells)),
         LevelsQuantity::Jump => part.dress.as_ref().map_or(0.0, |dress| dress.greatest_jump(world)),

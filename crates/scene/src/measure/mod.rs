@@ -148,6 +148,8 @@ struct LevelsPart {
     force: String,
     /// Only this one.
     level: Option<usize>,
+    /// Of active points: those rows that are looked at, ascending.
+    rows: Vec<u32>,
     /// What it wears.
     dress: Option<DressInfo>,
     /// Of a nearness: the distances at rest of the points of the finest mesh from its place [m].
@@ -549,15 +551,48 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
         );
         return None;
     }
+    if probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Variation) && !follows_criterion(body)
+    {
+        let message = format!("no criterion chooses the levels of body `{}` by a variation", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`, without `fixed`");
+        return None;
+    }
     let is_near = probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Nearness);
     let distance = |x: &Vec3| (*x - probe.about.unwrap_or(Vec3::ZERO)).length();
     Some(LevelsPart {
         system: body.system,
         force: solid_name(&body.spec.name),
         level: probe.level,
+        rows: if probe.quantity.build.is_of_active_points() {
+            rows_of_levels(probe, body, draft)
+        } else {
+            Vec::new()
+        },
         dress,
         distances: if is_near { body.mesh.points.iter().map(distance).collect() } else { Vec::new() },
     })
+}
+
+fn follows_criterion(body: &Placed) -> bool {
+    body.spec.levels.as_ref().is_some_and(|levels| levels.fixed.is_none())
+}
+
+/// Rows of the points of a body's meshes, or of one of them, that are in the region of a probe, ascending.
+fn rows_of_levels(probe: &Probe, body: &Placed, draft: &Draft) -> Vec<u32> {
+    let levels = body.levels_of().chain([body]).enumerate();
+    let mut rows: Vec<u32> = levels
+        .filter(|(level, _)| probe.level.is_none_or(|wanted| wanted == *level))
+        .flat_map(|(_, level)| {
+            let first = level.rows.start as u32;
+            let points = match &probe.region {
+                Some(region) => draft.selector(level).points(region),
+                None => (0..level.mesh.points.len() as u32).collect(),
+            };
+            points.into_iter().map(move |point| first + point)
+        })
+        .collect();
+    rows.sort_unstable();
+    rows
 }
 
 /// The cells that a probe is of.

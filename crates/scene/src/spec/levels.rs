@@ -100,6 +100,12 @@ pub(crate) static LEVELS: Keys = Keys::new(
             .or(Value::Number(0.1)),
         Key::number("coarsen", "", Range::NOT_NEGATIVE, "they go when it is below this around all of them")
             .or(Value::Number(0.025)),
+        Key::number(
+            "settled",
+            "s",
+            Range::NOT_NEGATIVE,
+            "date until which the finest mesh alone is at work; the variation that the body's own loads have made by then is not counted",
+        ),
         Key::new(
             "fixed",
             Shape::Formula(&PLACE_VARIABLES),
@@ -145,6 +151,7 @@ pub struct DressSpec {
     pub blend: f64,
     /// [m]
     pub most: Option<f64>,
+    pub site: Site,
 }
 
 impl LevelsSpec {
@@ -173,15 +180,19 @@ impl LevelsSpec {
         }
         let measure =
             if reader.choice("criterion") == "laplacian" { Measure::Laplacian } else { Measure::Jump };
-        let criterion =
-            Criterion { measure, refine: reader.number("refine"), coarsen: reader.number("coarsen") };
+        let criterion = Criterion {
+            measure,
+            refine: reader.number("refine"),
+            coarsen: reader.number("coarsen"),
+            settled: reader.maybe_number("settled"),
+        };
         if criterion.flickers() {
             let message = "points would come and go in every step";
             let expected = format!("at most half of `refine`, {}", 0.5 * criterion.refine);
             reader.log().add(Code::Conflict, &reader.site_of("coarsen"), message, expected);
         }
         if reader.has("fixed") {
-            for key in reader.written(&["criterion", "refine", "coarsen", "budget"]) {
+            for key in reader.written(&["criterion", "refine", "coarsen", "settled", "budget"]) {
                 let message = format!("`{key}` is of levels that change, and `fixed` says what they are");
                 reader.log().add(Code::Conflict, &reader.site_of(key), message, "`fixed` alone");
             }
@@ -214,6 +225,7 @@ impl LevelsSpec {
                 mesh: dress.has("mesh").then(|| MeshSpec::read(&dress)).flatten(),
                 blend: dress.number("blend"),
                 most: dress.maybe_number("most"),
+                site: dress.site(),
             }),
             cuts: reader
                 .tables("cuts")

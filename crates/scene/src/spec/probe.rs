@@ -282,7 +282,9 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
                 );
             }
         }
-        Subject::Levels(_) | Subject::Contour(_) | Subject::Bone(_) if reader.has("region") => {
+        Subject::Levels(_) | Subject::Contour(_) | Subject::Bone(_)
+            if reader.has("region") && !quantity.is_of_active_points() =>
+        {
             refuse(reader, "region", format!("`{name}` is of a whole body"), "no region");
         }
         Subject::Points(_)

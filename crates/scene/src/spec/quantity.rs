@@ -118,6 +118,7 @@ pub enum LevelsQuantity {
     MostNeighbours,
     UnlistedNeighbours,
     Nearness,
+    Variation,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,6 +236,11 @@ impl Quantity {
     pub fn is_of_particles(&self) -> bool {
         use LevelsQuantity::{FewestNeighbours, MostNeighbours, UnlistedNeighbours};
         matches!(self.subject, Subject::Levels(FewestNeighbours | MostNeighbours | UnlistedNeighbours))
+    }
+
+    /// Whether it is of active points of a body with levels, which may be those in a region.
+    pub fn is_of_active_points(&self) -> bool {
+        matches!(self.subject, Subject::Levels(LevelsQuantity::Active | LevelsQuantity::Variation))
     }
 
     /// Whether it is of bodies whose elements change their law.
@@ -694,9 +700,15 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "levels.active",
-        "points that move by themselves, of all levels or of the key `level`",
+        "points that move by themselves, of all levels or of the key `level`, in the region where there is one",
         LEVELS,
         levels("", LevelsQuantity::Active),
+    ),
+    &entry(
+        "levels.variation",
+        "the greatest variation around an active point, as it is compared with `refine` and `coarsen`, of all levels or of the key `level`",
+        LEVELS,
+        levels("", LevelsQuantity::Variation),
     ),
     &entry(
         "levels.ghosts",

@@ -68,7 +68,11 @@ impl TextureSpec {
                 let pattern = PATTERNS.entries.iter().find(|entry| entry.name == name)?.build;
                 FigureSpec::Pattern(pattern, colours(reader)?)
             }
-            (None, None) | (Some(_), Some(_)) => {
+            (Some(_), Some(_)) => {
+                let message = "`file` and `pattern` both say what the texture is";
+                return refuse(reader.site_of("pattern"), message, "`file` or `pattern` alone");
+            }
+            (None, None) => {
                 return refuse(reader.site(), "a texture is a picture or a pattern", "`file` or `pattern`");
             }
         };

@@ -141,6 +141,20 @@ fn print_summary(report: &Value) {
             number("energy_j"),
             number("least_energy_j"),
         ));
+        if number("share_at_limit") > 0.0 {
+            print_line(format_args!(
+                "hand {name}: its force was at the limit of {} N in {:.2} % of the ticks: a hand that pushes harder goes on alone; where force and tool quiver the coupling is too stiff",
+                number("limit_n"),
+                100.0 * number("share_at_limit"),
+            ));
+        }
+        if number("share_lost") > 0.0 {
+            print_line(format_args!(
+                "hand {name}: its device was lost in {:.2} % of the ticks, first at {:.3} s",
+                100.0 * number("share_lost"),
+                number("first_lost_seconds"),
+            ));
+        }
         let most = |of: &str| hand[of]["p99_9_ms"].as_f64().unwrap_or(f64::NAN);
         print_line(format_args!(
             "hand {name}: 99.9 % of forces say of the body what was no more than {:.2} ms before when the next one comes, and answer within {:.2} ms to where the device was",

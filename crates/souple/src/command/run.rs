@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status};
+use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status, Summary};
 use souple_scene::Scene;
-use souple_table::counted;
+use souple_table::{counted, four_digits};
 
 use super::progress::Meter;
 use super::{
@@ -226,11 +226,31 @@ fn print_summary(report: &Report, out: Option<&Path>) {
         report.real_time_factor()
     ));
     for probe in &report.probes {
-        print_line(format_args!("  {} = {:?} {}", probe.name, probe.last, probe.unit));
+        print_line(format_args!("  {} = {:?} {}{}", probe.name, probe.last, probe.unit, extremes(probe)));
     }
     let files = out.into_iter().flat_map(|out| [out.join("report.json"), out.join("last.png")]);
     for file in files.filter(|file| file.is_file()) {
         print_line(format_args!("  {}", file.display()));
+    }
+}
+
+/// Between what a number was, and how long a vector was at most; nothing of what never changed.
+fn extremes(probe: &Summary) -> String {
+    let four = four_digits;
+    match (probe.longest, &probe.min[..], &probe.max[..]) {
+        (Some((length, time)), ..) if probe.min != probe.max => {
+            format!("; at most {} {} long, at {} s", four(length), probe.unit, four(time)).replace("  ", " ")
+        }
+        (None, [min], [max]) if min < max => {
+            format!(
+                "; from {} at {} s to {} at {} s",
+                four(*min),
+                four(probe.min_at[0]),
+                four(*max),
+                four(probe.max_at[0])
+            )
+        }
+        _ => String::new(),
     }
 }
 

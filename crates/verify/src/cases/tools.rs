@@ -386,6 +386,33 @@ pub(super) const CASES: &[Case] = &[
         ..LIVER
     },
     Case {
+        id: "surgical_fine_where_touched",
+        capabilities: &["DEB-12", "DEB-30"],
+        what: "points of the finest mesh that move by themselves within 6 cm of the middle of a press of the organ while the tool holds still: there were none before it came",
+        scene: "surgical",
+        settings: &[],
+        reading: Reading::last("near").after(90),
+        reference: 20.0,
+        tolerance: Tolerance::AtLeast,
+        source: "specification, DEB-12: refines at the tool",
+        mutation: "bodies.liver.levels.refine=0.9",
+        ..LIVER
+    },
+    Case {
+        id: "surgical_coarse_when_let_go",
+        capabilities: &["DEB-12", "DEB-32"],
+        what: "points of the finest mesh of the whole organ that move by themselves half a second after the tool has let go, of 2075: no more than a hundredth beside those that its weight keeps",
+        scene: "surgical",
+        settings: &[],
+        reading: Reading::last("fine"),
+        reference: 20.0,
+        tolerance: Tolerance::AtMost,
+        source: "specification, DEB-12: what the tool has called goes with it",
+        // then the weight of the organ counts, and what has been refined stays
+        mutation: "bodies.liver.levels.settled=0",
+        ..LIVER
+    },
+    Case {
         id: "hand_jump_slow",
         capabilities: &["DEB-46", "DEB-47"],
         what: "greatest change of the force from one millisecond to the next in a press at a centimetre a second: a twentieth of what the hand feels once that is a tenth of a newton, a twelfth of its greatest",

@@ -232,6 +232,12 @@ impl Levels for OctreeForce {
         };
         Census {
             active: count(&|at| work.is_active(at)),
+            active_rows: self
+                .rows()
+                .zip(0..)
+                .filter(|(_, at)| work.is_active(*at))
+                .map(|(row, _)| row as u32)
+                .collect(),
             ghosts: count(&|at| self.variant == Variant::Hierarchical && work.is_divided(at)),
             cells: tree.levels.iter().map(Range::len).collect(),
             level_of_point: (0..tree.finest_count()).map(level_of).collect(),

@@ -1,0 +1,152 @@
+//! Tools that start where nothing touches them, and hands whose coupling is too stiff for them.
+
+use souple_engine::Motion;
+use souple_engine::obstacle::Side;
+use souple_haptics::{Arm, Coupling, TICK};
+use souple_math::Vec3;
+use souple_mesh::CellLocator;
+use souple_models::contact::shape::BuildShape;
+use souple_table::four_digits;
+
+use super::Draft;
+use super::bodies::Placed;
+use super::contact::built;
+use super::motion::motion;
+use crate::diagnostic::Site;
+use crate::reader::Chosen;
+use crate::spec::boundary::MotionSpec;
+use crate::spec::contact::Against;
+
+/// Dates at which it is looked how fast a hand means to move.
+const SAMPLES: u32 = 2000;
+
+/// Warns of all of them.
+pub fn warn(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for contact in &draft.spec.contacts {
+        let Some(Against::Shape(name)) = &contact.against else { continue };
+        let Some(shape) = draft.spec.shapes.iter().find(|shape| shape.name == *name) else { continue };
+        // one that turns is elsewhere than its shape says
+        if shape.rotation.is_some() {
+            continue;
+        }
+        let tool = (shape.shape.as_ref(), shape.motion.as_ref(), &shape.site);
+        warnings.extend(inside(draft, &contact.body, &format!("shape `{name}`"), tool));
+    }
+    for hand in &draft.spec.hands {
+        let tool = (hand.tool.as_ref(), hand.motion.as_ref(), &hand.site);
+        warnings.extend(inside(draft, &hand.touch.body, &format!("the tool of hand `{}`", hand.name), tool));
+    }
+    for (info, spec) in draft.hands.iter().filter_map(|info| {
+        let spec = draft.spec.hands.iter().find(|hand| hand.name == info.name)?;
+        Some((info, spec))
+    }) {
+        let Some(arm) = info.device.arm().filter(|_| spec.touch.imposed.is_none()) else { continue };
+        let doubts = too_stiff(&info.port.coupling, arm, draft.spec.run.duration);
+        let place = draft.place(&spec.site);
+        warnings.extend(doubts.into_iter().map(|doubt| format!("{place}: hand `{}`: {doubt}", spec.name)));
+    }
+    draft.warnings.extend(warnings);
+}
+
+/// A tool, what moves it, and where it is written.
+type Tool<'a> = (Option<&'a Chosen<BuildShape>>, Option<&'a MotionSpec>, &'a Site);
+
+/// Of a tool that starts with all of its surface inside the body that it is to touch.
+fn inside(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> Option<String> {
+    let body: &Placed = draft.body(body)?;
+    if body.mesh.cell_count() == 0 || body.mesh.dimension() < 3 {
+        return None;
+    }
+    let outline = built(draft, shape?)?.outline()?;
+    // a container holds the body
+    if outline.bodies != Side::Outside {
+        return None;
+    }
+    let moves = motion(draft.log, moves, site)?;
+    let offset = moves.map_or(Vec3::ZERO, |moves| moves.offset(Vec3::ZERO, 0.0));
+    let locator = CellLocator::new(&body.mesh);
+    let is_inside =
+        |place: &Vec3| locator.carrier(*place + offset).is_some_and(|location| location.distance == 0.0);
+    let points = &outline.surface.points;
+    (!points.is_empty() && points.iter().all(is_inside)).then(|| {
+        format!(
+            "{}: {what} starts inside body `{}`, where no surface is: it feels nothing until it comes out, and is then on the wrong side of it; \
+             start it outside",
+            draft.place(site),
+            body.spec.name
+        )
+    })
+}
+
+/// What of a coupling is too stiff for the arm that holds its device.
+///
+/// The device feels its force a tick `T` long, and the tool is led to where the device was: as stiff as may be it is a tick behind,
+/// `x - y = T v`. Then `M v' = M v - T (k T v + c (v - v₋))`, whose swing from tick to tick dies where `T² k + 2 T c < 2 M`. At a speed `v` of the
+/// hand the spring is stretched by `T v` in the air already.
+fn too_stiff(coupling: &Coupling, arm: &Arm, duration: f64) -> Vec<String> {
+    let Coupling { stiffness, damping, limit } = *coupling;
+    let mut doubts = Vec::new();
+    let (asked, bound) = (TICK * TICK * stiffness + 2.0 * TICK * damping, 2.0 * arm.mass);
+    if asked >= bound {
+        doubts.push(format!(
+            "a coupling of {} N/m and {} N s/m is too stiff for an arm of {} kg that feels it a millisecond long: the force goes to and fro between its limits; T² k + 2 T c, \
+             {} kg, must be below twice that mass",
+            four_digits(stiffness),
+            four_digits(damping),
+            four_digits(arm.mass),
+            four_digits(asked)
+        ));
+    }
+    let speed = fastest(arm.intent.as_ref(), duration);
+    let drag = stiffness * TICK * speed;
+    if drag >= limit {
+        doubts.push(format!(
+            "at {} m/s, as fast as the hand means to move, its tool is a millisecond behind and the coupling of {} N/m pulls with its limit of {} N in the air already: \
+             take less than {} N/m",
+            four_digits(speed),
+            four_digits(stiffness),
+            four_digits(limit),
+            four_digits(limit / (TICK * speed))
+        ));
+    }
+    doubts
+}
+
+/// The greatest speed that is meant in the course of a run [m/s].
+fn fastest(intent: &dyn Motion, duration: f64) -> f64 {
+    let speed =
+        |sample: u32| intent.velocity(Vec3::ZERO, duration * f64::from(sample) / f64::from(SAMPLES)).length();
+    (0..=SAMPLES).map(speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use souple_models::loads::RigidMotion;
+
+    use super::*;
+
+    fn arm() -> Arm {
+        Arm {
+            mass: 0.4,
+            stiffness: 300.0,
+            damping: 8.0,
+            reflex: 0.0,
+            delay: 0.06,
+            lost: (0.0, 0.0),
+            intent: Arc::new(RigidMotion::default()),
+        }
+    }
+
+    /// The usual coupling is not, one beyond `2 M/T²` is.
+    #[test]
+    fn couplings_are_bounded_by_the_arm() {
+        assert!(too_stiff(&Coupling::DEFAULT, &arm(), 1.0).is_empty());
+        let bound = 2.0 * 0.4 / (TICK * TICK);
+        let of = |stiffness| too_stiff(&Coupling { stiffness, damping: 0.0, limit: 5.0 }, &arm(), 1.0);
+        assert!(of(0.99 * bound).is_empty());
+        assert!(of(1.01 * bound)[0].contains("too stiff for an arm of 0.4 kg"));
+    }
+}

@@ -1,0 +1,123 @@
+//! Tools and what is worn that cannot work as they are written: said, with the place.
+
+use std::path::Path;
+
+use souple_scene::read_text;
+
+const HELD: &str = r#"format = 1
+[world]
+period = "1 ms"
+[systems.main]
+stepper = "backward_euler"
+[bodies.bar]
+mesh = { generate = "bar", size = [1, 0.1, 0.1], cells = [10, 2, 2], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "10 kPa", poissons_ratio = 0.3, density = 1000 }
+[[bodies.bar.pins]]
+region = "x_min"
+[hands.right]
+device = { name = "emulated", mass = "0.4 kg" }
+tool = { name = "sphere", centre = [0.5, 0.16, 0.05], radius = 0.02 }
+body = "bar"
+touch = { detect = "triangles" }
+coupling = { stiffness = "400 N/m", damping = 2, limit = "5 N" }
+motion = { times = [0, 0.1], offsets = [[0, 0, 0], [0, -0.02, 0]] }
+"#;
+
+fn warnings(text: &str) -> Vec<String> {
+    read_text("scene.toml", text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}")).warnings
+}
+
+#[track_caller]
+fn assert_says_alone(text: &str, words: &str) {
+    let said = warnings(text);
+    assert!(said.len() == 1 && said[0].contains(words) && said[0].contains("scene.toml:"), "{said:?}");
+}
+
+/// A tool that starts inside its body touches nothing, one outside or halfway does; a shape as well as a hand's tool.
+#[test]
+fn tools_inside_are_told() {
+    assert_eq!(warnings(HELD), Vec::<String>::new());
+    assert_says_alone(
+        &HELD.replace("[0.5, 0.16, 0.05]", "[0.5, 0.05, 0.05]"),
+        "the tool of hand `right` starts inside body `bar`",
+    );
+    // where it is led to as it starts counts
+    let led = HELD.replace("[[0, 0, 0], [0, -0.02, 0]]", "[[0, -0.11, 0], [0, -0.12, 0]]");
+    assert_says_alone(&led, "starts inside body `bar`");
+    let shape = |centre: &str| {
+        let hands = HELD.find("[hands.right]").unwrap_or(HELD.len());
+        format!(
+            "{}[shapes.ball]\nshape = {{ name = \"sphere\", centre = {centre}, radius = 0.02 }}\n[[contacts]]\nbody = \"bar\"\nshape = \"ball\"\n",
+            &HELD[..hands]
+        )
+    };
+    assert_eq!(warnings(&shape("[0.55, 0.13, 0.05]")), Vec::<String>::new());
+    assert_says_alone(&shape("[0.55, 0.05, 0.05]"), "shape `ball` starts inside body `bar`");
+}
+
+/// `k T v` at 0.2 m/s is 0.08 N of the 5 N; with 40 kN/m it would be 8 N, and 2 MN/m are beyond what an arm of 0.4 kg bears.
+#[test]
+fn couplings_that_are_too_stiff_are_told() {
+    let of =
+        |stiffness: &str| HELD.replace("stiffness = \"400 N/m\"", &format!("stiffness = \"{stiffness}\""));
+    assert_eq!(warnings(&of("20 kN/m")), Vec::<String>::new());
+    assert_says_alone(&of("40 kN/m"), "take less than 25000 N/m");
+    let said = warnings(&of("2 MN/m"));
+    assert!(said.iter().any(|told| told.contains("too stiff for an arm of 0.4 kg")), "{said:?}");
+}
+
+/// A body that is pinned nearly whole, as by a region in other units.
+#[test]
+fn bodies_pinned_whole_are_told() {
+    let whole = HELD.replace("region = \"x_min\"", "region = { box = [[0, -1, -1], [1000, 100, 100]] }");
+    assert_says_alone(&whole, "are pinned along all axes");
+}
+
+const LAYERED: &str = r#"format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = { name = "staggered", halvings = 9 }
+[bodies.bar]
+mesh = { generate = "bar", size = [1, 0.1, 0.1], cells = [20, 2, 2], element = "tet4" }
+material = { name = "stable_neo_hookean", youngs_modulus = "100 kPa", poissons_ratio = 0.3, density = 1000 }
+levels = { count = 2, budget = 1e9 }
+"#;
+
+/// A budget that the coarsest mesh keeps and the finest beside a cut does not.
+#[test]
+fn budgets_that_cuts_exceed_are_told() {
+    let of = |budget: f64, cuts: &str| LAYERED.replace("budget = 1e9", &format!("budget = {budget}{cuts}"));
+    let cuts = ", cuts = [{ region = { box = [[0.4, -1, -1], [0.5, 0.05, 1]] }, time = 0.1 }]";
+    assert_eq!(warnings(&of(1e9, cuts)), Vec::<String>::new());
+    let said = warnings(&of(1.0, ""));
+    assert!(said.len() == 1 && said[0].contains("with the coarsest mesh alone"), "{said:?}");
+    let mut words = said[0].split_whitespace().skip_while(|word| *word != "evaluates");
+    let least: f64 = words.nth(1).and_then(|number| number.parse().ok()).unwrap_or(0.0);
+    assert_eq!(warnings(&of(least, "")), Vec::<String>::new());
+    assert_says_alone(&of(least, cuts), "once all of its cuts are made");
+}
+
+/// A dress in millimetres beside a body in metres.
+#[test]
+fn dresses_of_another_size_are_told() {
+    let of = |size: &str| {
+        let mesh =
+            format!("mesh = {{ generate = \"bar\", size = {size}, cells = [30, 3, 3], element = \"tet4\" }}");
+        format!("{LAYERED}[bodies.bar.levels.dress]\n{mesh}\n")
+            .replace("levels = { count = 2, budget = 1e9 }", "[bodies.bar.levels]\ncount = 2")
+    };
+    assert_eq!(warnings(&of("[1, 0.1, 0.1]")), Vec::<String>::new());
+    assert_says_alone(&of("[1000, 100, 100]"), "the dress of body `bar` is 1010 m across");
+}
+
+/// What no number of halvings makes stable is the material's, or the step's.
+#[test]
+fn moduli_beyond_all_steps_are_named() {
+    let text = LAYERED.replace("100 kPa", "1e15 Pa");
+    let errors = match read_text("scene.toml", &text, Path::new("."), &[]) {
+        Ok(scene) => panic!("accepted with {:?}", scene.warnings),
+        Err(errors) => errors.to_string(),
+    };
+    assert!(errors.contains("youngs_modulus") && errors.contains("is its unit right?"), "{errors}");
+}
