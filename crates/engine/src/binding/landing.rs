@@ -477,6 +477,10 @@ fn touches_of_rounding_are_borne() {
     let mut world = thrown.world();
     for step in 0..20 {
         world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
+        for (x, place) in world.state().systems[0].q.iter().zip(&thrown.places) {
+            // gaps are found to 1e-11 of a metre
+            assert!((*x - *place).length() < 2e-11, "step {step}: {x:?} from {place:?}");
+        }
     }
 }
 
@@ -491,6 +495,9 @@ fn nails_at_the_origin_hold_beside_impacts() {
         let mut world = thrown.world_with(vec![Box::new(Nail)]);
         for step in 0..300 {
             world.step().unwrap_or_else(|error| panic!("seed {seed}, step {step}: {error}"));
+            // 1e-12 of the longest way in a step: none flies faster than 10 m/s
+            let away = world.state().systems[0].q[0].length();
+            assert!(away < 1e-12 * 10.0 * TIMESTEP, "seed {seed}, step {step}: {away}");
         }
     }
 }

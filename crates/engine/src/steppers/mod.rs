@@ -47,7 +47,7 @@ pub struct StepReport {
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
     pub newton_residual: f64,
-    /// Sweeps over contacts whose forces are solved for.
+    /// Sweeps over contacts whose forces are solved for, and products with their matrix.
     pub contact_iterations: u64,
     /// How far such contacts are from signs, gaps and friction as they are to be, of how far they would be without forces.
     pub contact_residual: f64,

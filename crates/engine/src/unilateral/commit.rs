@@ -66,6 +66,7 @@ impl ContactSystem {
             + size_of::<Entry>() * self.entries.capacity()
             + size_of::<[f64; 2]>() * self.stiffest.capacity()
             + size_of::<f64>() * self.reaches.capacity()
+            + self.face.bytes()
             + 8 * (self.touches.capacity()
                 + self.entry_starts.capacity()
                 + self.starts.capacity()

@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 
 use super::places::{Law, Place};
-use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, SWEEPS_OF_ROUND};
+use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, PRODUCTS, SWEEPS_AFTER, SWEEPS_BEFORE};
 
 /// What a sweep did to forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,12 +27,23 @@ impl ContactSystem {
                 self.change[place] = contact.force_before;
             }
         }
+        if self.sweep_on(SWEEPS_BEFORE) == Sweep::Moved {
+            self.descend(PRODUCTS);
+            self.sweep_on(SWEEPS_AFTER);
+        }
+    }
+
+    /// Sweeps until forces have settled, so often at most. What is extrapolated may pull or leave its cone: a sweep is the last.
+    pub(super) fn sweep_on(&mut self, most: u64) -> Sweep {
+        self.direction.fill(Vec3::ZERO);
         let mut size_before = f64::INFINITY;
-        for sweep in 1..=SWEEPS_OF_ROUND {
+        for sweep in 1..=most {
             self.report.contact_iterations += 1;
-            // what is extrapolated may pull or leave its cone: a round ends with a sweep
-            if self.sweep() == Sweep::Settled || sweep == SWEEPS_OF_ROUND {
-                return;
+            if self.sweep() == Sweep::Settled {
+                return Sweep::Settled;
+            }
+            if sweep == most {
+                break;
             }
             let size: f64 =
                 self.swept.iter().zip(&self.stiffest).map(|(by, [n, _])| by.length_sq() * n).sum();
@@ -43,31 +54,39 @@ impl ContactSystem {
                 size_before = f64::INFINITY;
                 continue;
             }
-            for place in 0..count {
+            for place in 0..self.places.len() {
                 self.change[place] += self.direction[place] * ratio;
                 self.direction[place] = self.direction[place] * ratio + self.swept[place];
             }
         }
+        Sweep::Moved
     }
 
     /// Gives each place in turn the force that it asks for.
     pub(super) fn sweep(&mut self) -> Sweep {
         let mut found = Sweep::Settled;
         for place in 0..self.places.len() {
-            let Place { force, law, near, .. } = self.places[place];
-            let mut off = self.off[place];
-            for slot in self.starts[place]..self.starts[place + 1] {
-                off += self.blocks[slot] * self.change[self.columns[slot] as usize];
-            }
+            let Place { force, law, .. } = self.places[place];
+            let off = self.off[place] + self.moved(place, &self.change);
             let by = self.wanted_change(place, force + self.change[place], off, law);
-            // closer than is asked where the step leads, where it is measured again
-            if self.length_of(place, by) > 0.2 * (CONVERGED * self.tightness * self.scale + near) {
+            if self.length_of(place, by) > self.let_be(place) {
                 found = Sweep::Moved;
             }
             self.swept[place] = by;
             self.change[place] += by;
         }
         found
+    }
+
+    /// What changes of forces move a place by [m].
+    pub(super) fn moved(&self, place: usize, changes: &[Vec3]) -> Vec3 {
+        let slots = self.starts[place]..self.starts[place + 1];
+        slots.map(|slot| self.blocks[slot] * changes[self.columns[slot] as usize]).sum()
+    }
+
+    /// How far a place may be off [m]: closer than is asked where the step leads, where it is measured again.
+    pub(super) fn let_be(&self, place: usize) -> f64 {
+        0.2 * (CONVERGED * self.tightness * self.scale + self.places[place].near)
     }
 
     /// What a place that is off asks its force to change by: the projection onto bounds, or onto signs and then onto the friction cone, with the slip

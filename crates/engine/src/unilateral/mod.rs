@@ -11,14 +11,18 @@
 //! are impulses `h f` then. That is the time stepping of Moreau (1988) and of Stewart & Trinkle (1996), with gaps as they are where the step ends
 //! in place of their linearisations: nothing creeps into what it slides along. An elastic impact is the reversal of the step that led to it, to rounding.
 //!
-//! Forces follow by a projected Gauss–Seidel method over contacts, whose changes are extrapolated as those of conjugate gradients are
-//! (Silcowitz-Hansen, Niebe & Erleben 2010), with the matrix `D = h² J W̃ Jᵀ` of what forces move contacts by. `W̃` are inverse masses with relations:
-//! a rigid body is masses on exact rods. Multipliers of relations that yield are swept for beside contacts, within bounds in the place of cones, where
+//! Forces follow by a projected Gauss–Seidel method over contacts, whose changes are extrapolated as those of conjugate gradients are, with the
+//! matrix `D = h² J W̃ Jᵀ` of what forces move contacts by. `W̃` are inverse masses with relations: a rigid body is masses on exact rods. Where sweeps do not
+//! settle soon, as along chains of bodies, conjugate gradients follow over what sweeps have left free (`face.rs`), and sweeps that judge what these found
+//! (Silcowitz-Hansen, Niebe & Erleben 2010). Multipliers of relations that yield are sought beside contacts, within bounds in the place of cones, where
 //! these decide which of them give way ([`crate::binding`]); the other relations are eliminated then.
 //! Where more contacts bear than are needed, of all forces that do the same those are found that are near to those of the step before.
 
+#[cfg(test)]
+mod chains;
 mod commit;
 mod delassus;
+mod face;
 mod gauss_seidel;
 mod places;
 mod search;
@@ -30,6 +34,7 @@ use crate::state::{Pair, SystemState, pairs_of};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::System;
 
+use face::Face;
 pub(crate) use places::Bounded;
 use places::{Entry, Place};
 
@@ -42,12 +47,15 @@ const LET_PASS: f64 = 1e-4;
 const TOLERANCE: f64 = 1e-11;
 /// Of coordinates of a body, what its relations are off by.
 const OF_RELATIONS: f64 = 1e-12;
-/// Sweeps over all contacts of a step.
+/// Sweeps over all contacts of a step, and products in the place of sweeps.
 const MOST_SWEEPS: u64 = 20_000;
-/// Sweeps after which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
-const SWEEPS_OF_ROUND: u64 = 500;
-/// Each makes the curvature of gaps and relations within the step the square of what it was, or finds contacts that others push together.
-const MOST_ROUNDS: u32 = 100;
+/// Sweeps after which forces are sought on the face that they have found, products with `D` of that search, and sweeps after it. These are a round, after
+/// which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
+const SWEEPS_BEFORE: u64 = 60;
+const PRODUCTS: u64 = 100;
+const SWEEPS_AFTER: u64 = 30;
+/// Each makes the curvature of gaps and relations within the step the square of what it was, finds contacts that others push together, or spends its sweeps.
+const MOST_ROUNDS: u32 = 400;
 /// Of how far off contacts may be, what they may be after another search with multipliers between bounds than after the one before: relations that
 /// hold after it share out anew what it has left.
 const TIGHTER: f64 = 0.1;
@@ -228,6 +236,8 @@ pub(crate) struct ContactSystem {
     swept: Vec<Vec3>,
     direction: Vec<Vec3>,
     response: Vec<Vec3>,
+    /// Of the search on a face.
+    face: Face,
     /// The greatest coordinate of a body, at its least row [m].
     reaches: Vec<f64>,
     /// The greatest way by which a gap or a slip is off without forces [m].

@@ -1,0 +1,151 @@
+//! Tests of forces along chains: columns of masses of 1 kg that stand on each other, in a step in which they would fall by a unit.
+
+use souple_math::{Mat3, Vec3};
+
+use super::ContactSystem;
+use super::gauss_seidel::Sweep;
+use super::places::{Law, Place};
+use super::{MOST_SWEEPS, SWEEPS_BEFORE};
+
+/// What is between a mass and what it stands on.
+#[derive(Clone, Copy)]
+struct Joint {
+    /// The number of the mass above it; that below it is the one before, or the floor.
+    above: usize,
+    law: Law,
+    off: Vec3,
+}
+
+/// Joints of a column, from the floor up, under weights of 1 N.
+fn column(count: usize, law: Law) -> Vec<Joint> {
+    let off = |above: usize| if above == 0 { -Vec3::X } else { Vec3::ZERO };
+    (0..count).map(|above| Joint { above, law, off: off(above) }).collect()
+}
+
+/// The problem of a step in which a force of 1 N moves a mass by a unit.
+fn system(joints: &[Joint]) -> ContactSystem {
+    let mut system =
+        ContactSystem { scale: 1.0, tightness: 1.0, starts: vec![0], ..ContactSystem::default() };
+    for (row, joint) in joints.iter().enumerate() {
+        for (column, other) in joints.iter().enumerate() {
+            let moved = match (joint.above, other.above) {
+                (0, 0) => 1.0,
+                (one, same) if one == same => 2.0,
+                (one, next) if one.abs_diff(next) == 1 => -1.0,
+                _ => continue,
+            };
+            if row == column {
+                system.own.push(system.columns.len());
+                system.stiffest.push([moved; 2]);
+            }
+            system.columns.push(column as u32);
+            system.blocks.push(Mat3::IDENTITY * moved);
+        }
+        system.starts.push(system.columns.len());
+        system.places.push(Place { force: Vec3::ZERO, law: joint.law, slope: 1.0, near: 0.0 });
+        system.off.push(joint.off);
+    }
+    system.change = vec![Vec3::ZERO; joints.len()];
+    (system.swept, system.direction) = (system.change.clone(), system.change.clone());
+    system
+}
+
+/// Forces by rounds of sweeps and searches on faces, from where each round before left them, and what that took.
+fn by_rounds(joints: &[Joint]) -> (Vec<Vec3>, u64) {
+    let mut system = system(joints);
+    for _ in 0..100 {
+        system.solve(false);
+        let found: Vec<Vec3> = system.change.clone();
+        for (place, change) in found.iter().enumerate() {
+            let moved = system.moved(place, &found);
+            system.off[place] += moved;
+            system.places[place].force += *change;
+        }
+        system.change.fill(Vec3::ZERO);
+        if system.sweep() == Sweep::Settled {
+            return (
+                system.places.iter().map(|place| place.force).collect(),
+                system.report.contact_iterations,
+            );
+        }
+    }
+    panic!("forces are not found");
+}
+
+/// Forces by sweeps alone.
+fn by_sweeps(joints: &[Joint]) -> (Vec<Vec3>, u64) {
+    let mut system = system(joints);
+    assert!(system.sweep_on(1_000_000) == Sweep::Settled);
+    (system.change.clone(), system.report.contact_iterations)
+}
+
+/// Forces of both are the same to what places may be off, 2e-8, times the most that one force in a column of `n` may change for that, `n²/2`.
+fn assert_same(one: &[Vec3], other: &[Vec3]) {
+    let most = 2.0 * 2e-8 * 0.5 * (one.len() as f64).powi(2);
+    for (joint, (a, b)) in one.iter().zip(other).enumerate() {
+        assert!((*a - *b).length() < most, "joint {joint}: {a:?} and {b:?}");
+    }
+}
+
+/// A column bears its weight: each joint what is above it. With all joints closed conjugate gradients end after as many products as there are masses,
+/// where sweeps hand on what a joint bears by one joint each.
+#[test]
+fn columns_bear_their_weight() {
+    let count = 80;
+    let joints = column(count, Law::Cone(0.5));
+    let (forces, rounds) = by_rounds(&joints);
+    let weights: Vec<Vec3> = (0..count).map(|joint| Vec3::X * (count - joint) as f64).collect();
+    assert_same(&forces, &weights);
+    let (swept, sweeps) = by_sweeps(&joints);
+    assert_same(&swept, &weights);
+    // the first product is of the residual, and the sweeps that judge are a few
+    let most = SWEEPS_BEFORE + count as u64 + 10;
+    assert!(rounds <= most && sweeps > 2 * most, "{rounds}, by sweeps alone {sweeps}");
+}
+
+/// The mass on top is drawn aside by more than its friction bears: it slides, and what it rubs with is borne down to the floor.
+#[test]
+fn what_slides_is_borne_below() {
+    let count = 60;
+    let mut joints = column(count, Law::Cone(0.5));
+    joints[count - 1].off.y = 5.0;
+    let (forces, rounds) = by_rounds(&joints);
+    let expected: Vec<Vec3> = (0..count).map(|joint| Vec3::new((count - joint) as f64, -0.5, 0.0)).collect();
+    assert_same(&forces, &expected);
+    let (swept, sweeps) = by_sweeps(&joints);
+    assert_same(&swept, &expected);
+    assert!(2 * rounds < sweeps, "{rounds}, by sweeps alone {sweeps}");
+}
+
+/// Where masses touch at two places of which one is a little higher, that one bears: forces go from the other to it as far as it is released. By sweeps they go
+/// there by what the two contradict each other by, over and over, and are not there when a step has no sweeps left.
+#[test]
+fn the_higher_of_two_places_bears() {
+    let count = 20;
+    let apart = 1e-6;
+    let joints: Vec<Joint> = column(count, Law::Cone(0.0))
+        .into_iter()
+        .flat_map(|joint| [Joint { off: joint.off + Vec3::X * apart, ..joint }, joint])
+        .collect();
+    let (forces, rounds) = by_rounds(&joints);
+    // as of columns alone
+    let most = 2.0 * 2e-8 * 0.5 * (count as f64).powi(2);
+    for (joint, pair) in forces.chunks(2).enumerate() {
+        let weight = (count - joint) as f64;
+        assert!(pair[0].x == 0.0 && (pair[1].x - weight).abs() < most, "{joint}: {pair:?}");
+    }
+    assert!(system(&joints).sweep_on(MOST_SWEEPS) == Sweep::Moved);
+    assert!(rounds < MOST_SWEEPS, "{rounds}");
+}
+
+/// What yields at less than the weight above gives way, as by sweeps alone.
+#[test]
+fn limits_are_met_as_by_sweeps() {
+    let joints = column(60, Law::Bounds(45.0));
+    let (forces, rounds) = by_rounds(&joints);
+    let (swept, sweeps) = by_sweeps(&joints);
+    assert_same(&forces, &swept);
+    assert!(forces.iter().all(|force| force.x.abs() <= 45.0));
+    assert!(forces[0].x == 45.0 && forces[59].x < 45.0, "{forces:?}");
+    assert!(rounds < sweeps, "{rounds}, by sweeps alone {sweeps}");
+}
