@@ -324,7 +324,7 @@ fn plans_are_read() {
         (&format!("{head}0,5\n"), "line 2: the row is \"0,5\""),
         (&format!("{head}0,5,4\n0.01,5,NaN\n"), "line 3: the row is \"0.01,5,NaN\""),
         (&format!("{head}0,x,5,4\n"), "line 2: the row is \"0,x,5,4\""),
-        ("n.drive [N]\n4\n", "no column is of `n.drive`"),
+        ("n.drive [N]\n0\n", "no column is of `n.drive`"),
         ("time [ms],n.drive [N]\n0,4\n", "a column is `time [ms]`"),
         (&format!("{head}0,5,4\n0.02,5,4\n"), "line 3 is of 0.02 s"),
     ] {
