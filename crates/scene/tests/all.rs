@@ -28,4 +28,5 @@ mod skins;
 mod split;
 mod surfaces;
 mod textures;
+mod worlds;
 mod yielding;

@@ -3,7 +3,7 @@
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::constraints::{read, started};
+use crate::worlds::{assert_goes_on, read, started, stepped};
 
 /// Two dice and a ball that fly into each other where nothing else pulls.
 const FLYING: &str = r#"
@@ -95,29 +95,8 @@ fn nothing_is_entered() {
 /// A run that goes on from its state makes the same bits, and so do any number of threads; detection beside the steps has them search anew.
 #[test]
 fn bodies_go_on_from_state() {
-    let mut world = started(FLYING, &[]);
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-    });
-    let mut resumed = read(FLYING, &[]).unwrap().model.start(world.state().clone());
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-        resumed.step().unwrap();
-    });
-    assert!(world.state() == resumed.state());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let threaded = pool.install(|| {
-        let mut world = started(FLYING, &[]);
-        (0..40).for_each(|_| {
-            world.step().unwrap();
-        });
-        world.state().clone()
-    });
-    assert!(*world.state() == threaded);
-    let mut late = started(FLYING, &["world.collisions=one_period_late"]);
-    (0..40).for_each(|_| {
-        late.step().unwrap();
-    });
+    let world = assert_goes_on(FLYING, 20);
+    let late = stepped(started(FLYING, &["world.collisions=one_period_late"]), 40);
     assert!(world.state().systems[0].q == late.state().systems[0].q);
 }
 
