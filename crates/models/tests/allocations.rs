@@ -29,7 +29,7 @@ use souple_models::multiresolution::{
     Choice, Coupling, LevelsDescription, LevelsForce, Loops, PLACE_VARIABLES, Stiffness,
 };
 use souple_models::network::relations::{Guide, Relation};
-use souple_models::network::{RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints};
+use souple_models::network::{Parting, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints};
 use souple_models::solids::{
     RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
 };
@@ -230,7 +230,7 @@ fn steps_of_rigid_balls() {
             name: "main".into(),
             kinematics,
             mass,
-            forces: vec![Box::new(gravity), Box::new(floor), Box::new(balls)],
+            forces: vec![Box::new(gravity), Box::new(Parting(floor)), Box::new(Parting(balls))],
             constraints: Vec::new(),
             stepper: stepper("t_simulation", &[]),
             steps_per_period: 1,

@@ -1,8 +1,8 @@
 //! Bodies with faces: slopes of their gaps, which features meet, and that they neither make momentum nor torque.
 
-use souple_engine::{Configuration, Detection, Force, ImpactLaw, Pair, Unilateral};
+use souple_engine::{Configuration, Detection, ImpactLaw, Pair, Unilateral};
 use souple_math::Vec3;
-use souple_models::network::{Polyhedra, PolyhedraDescription, Polyhedron};
+use souple_models::network::{Apart, Polyhedra, PolyhedraDescription, Polyhedron};
 
 /// The corners of a box between two corners.
 fn corners(low: [f64; 3], high: [f64; 3]) -> Vec<Vec3> {

@@ -29,4 +29,5 @@ mod split;
 mod surfaces;
 mod textures;
 mod tool_doubts;
+mod worlds;
 mod yielding;

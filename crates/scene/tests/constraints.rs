@@ -1,22 +1,10 @@
 //! Constraints between masses: what is kept, shared out, refused and told.
 
-use std::path::Path;
-
 use souple_engine::{StepError, World};
 use souple_math::Vec3;
 use souple_models::network::Constraints;
-use souple_scene::Scene;
 
-pub fn read(text: &str, settings: &[&str]) -> Result<Scene, String> {
-    let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
-    souple_scene::read_text("constraints", text, Path::new("."), &settings)
-        .map_err(|errors| errors.to_string())
-}
-
-pub fn started(text: &str, settings: &[&str]) -> World {
-    let scene = read(text, settings).unwrap_or_else(|message| panic!("{message}"));
-    scene.model.start(scene.state)
-}
+use crate::worlds::{read, started};
 
 /// Multipliers of the first component, by force and relation.
 fn multipliers(world: &World, name: &str) -> Vec<f64> {

@@ -2,7 +2,7 @@
 
 use souple_engine::{StepError, World};
 
-use crate::constraints::{read, started};
+use crate::worlds::{read, started};
 
 /// A bar that falls beside its pins and swings.
 const HUNG: &str = r#"

@@ -3,7 +3,7 @@
 use souple_engine::World;
 use souple_models::solids::InelasticForce;
 
-use crate::constraints::{read, started};
+use crate::worlds::{read, started};
 
 /// A bar that creeps, yields and tears while it is drawn out.
 const DRAWN: &str = r#"

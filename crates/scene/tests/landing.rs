@@ -3,12 +3,7 @@
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::constraints::{read, started};
-
-/// By all forces [J].
-fn dissipated(world: &mut World) -> f64 {
-    world.energy().by_force.iter().map(|(_, energy)| energy.dissipated).sum()
-}
+use crate::worlds::{assert_goes_on, dissipated, started};
 
 /// A leg between a floor and a plate that is led down flows as fast as the plate comes, under its limit, which both of them bear.
 #[test]
@@ -127,23 +122,5 @@ friction = 0.4
 /// A run that goes on from its state makes the same bits, and so do any number of threads.
 #[test]
 fn landings_go_on_from_state() {
-    let mut world = started(FRAME, &[]);
-    (0..60).for_each(|_| {
-        world.step().unwrap();
-    });
-    let mut resumed = read(FRAME, &[]).unwrap().model.start(world.state().clone());
-    (0..60).for_each(|_| {
-        world.step().unwrap();
-        resumed.step().unwrap();
-    });
-    assert!(world.state() == resumed.state());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let threaded = pool.install(|| {
-        let mut world = started(FRAME, &[]);
-        (0..120).for_each(|_| {
-            world.step().unwrap();
-        });
-        world.state().clone()
-    });
-    assert!(world.state() == &threaded);
+    assert_goes_on(FRAME, 60);
 }

@@ -3,7 +3,7 @@
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::constraints::{read, started};
+use crate::worlds::{assert_goes_on, read, started, stepped};
 
 /// Two dice and a ball that fly into each other where nothing else pulls.
 const FLYING: &str = r#"
@@ -95,29 +95,8 @@ fn nothing_is_entered() {
 /// A run that goes on from its state makes the same bits, and so do any number of threads; detection beside the steps has them search anew.
 #[test]
 fn bodies_go_on_from_state() {
-    let mut world = started(FLYING, &[]);
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-    });
-    let mut resumed = read(FLYING, &[]).unwrap().model.start(world.state().clone());
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-        resumed.step().unwrap();
-    });
-    assert!(world.state() == resumed.state());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let threaded = pool.install(|| {
-        let mut world = started(FLYING, &[]);
-        (0..40).for_each(|_| {
-            world.step().unwrap();
-        });
-        world.state().clone()
-    });
-    assert!(*world.state() == threaded);
-    let mut late = started(FLYING, &["world.collisions=one_period_late"]);
-    (0..40).for_each(|_| {
-        late.step().unwrap();
-    });
+    let world = assert_goes_on(FLYING, 20);
+    let late = stepped(started(FLYING, &["world.collisions=one_period_late"]), 40);
     assert!(world.state().systems[0].q == late.state().systems[0].q);
 }
 
@@ -131,12 +110,9 @@ fn wrong_bodies_are_refused() {
         (faces("{ of = [\"one\", \"one\"], hull = true }"), "none of the 2 bodies meets another"),
         (faces("{ of = [\"one\", \"ball\"], hull = true }"), "the masses of `ball` rest in one plane"),
         (faces("{ of = [\"one\", \"three\"], hull = true }"), "there is no group of masses `three`"),
-        (faces("{ of = [\"one\", \"two\"] }"), "a body has triangles, a hull, or balls"),
-        (faces("{ of = [\"one\", \"two\"], hull = false }"), "a body has triangles, a hull, or balls"),
-        (
-            faces("{ of = [\"one\", \"two\"], hull = true, radius = 1 }"),
-            "a body has triangles, a hull, or balls",
-        ),
+        (faces("{ of = [\"one\", \"two\"] }"), "or balls of a radius: of these this has none"),
+        (faces("{ of = [\"one\", \"two\"], hull = false }"), "of these this has `hull = false`"),
+        (faces("{ of = [\"one\", \"two\"], hull = true, radius = 1 }"), "of these this has hull and radius"),
         (faces("{ of = [\"one\", \"two\"], radius = 0 }"), "radius"),
         (
             faces("{ of = [\"one\", \"two\"], triangles = [[0, 1, 9]] }"),
@@ -165,7 +141,7 @@ fn wrong_bodies_are_refused() {
             "what holds from one side holds at once",
         ),
         (other("faces = []"), "there are no faces"),
-        (other("rigid = false"), "it is said that nothing is constrained"),
+        (other("rigid = false"), "it is said that nothing is constrained, by `rigid = false`"),
         (other("rigid = true, of = [\"ball\"]"), "one mass alone is held by nothing"),
         (other("rigid = true, yields_at = 1"), "this constraint does not give way"),
     ] {
@@ -173,6 +149,17 @@ fn wrong_bodies_are_refused() {
             Ok(_) => panic!("{setting} is taken"),
             Err(message) => assert!(message.contains(words), "{setting}: {message}"),
         }
+    }
+}
+
+/// What is of a wrong type is told once, as that.
+#[test]
+fn wrong_types_are_told_once() {
+    for constraint in ["rigid = \"yes\"", "faces = [{ of = [\"one\", \"two\"], hull = 1 }]"] {
+        let setting = format!("networks.space.constraints=[{{ {constraint} }}]");
+        let Err(message) = read(FLYING, &[&setting]) else { panic!("{setting} is taken") };
+        // an empty line is between two errors
+        assert!(message.contains("true or false") && !message.contains("\n\n"), "{message}");
     }
 }
 
@@ -213,6 +200,55 @@ restitution = 0.5
     let through = "networks.room.constraints[0].faces[0].triangles=[[0, 2, 1], [0, 3, 2]]";
     let fallen = height(&[through], 60);
     assert!((fallen - (0.5 - 5.0 * 0.36)).abs() < 2e-3 * 6.0, "{fallen}");
+}
+
+/// A closed surface that is inside out is a vessel: what is thrown within it stays there.
+#[test]
+fn what_is_inside_out_holds_what_is_within() {
+    const THROWN: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+gravity = [0, 0, -10]
+[systems.main]
+stepper = "t_simulation"
+steps_per_period = 5
+[networks.room.masses.box]
+positions = [[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0], [-1, -1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, 1]]
+mass = 1
+fixed = true
+[networks.room.masses.die]
+lattice = { origin = [-0.1, -0.1, 0.4], spacing = 0.2, counts = [2, 2, 2] }
+velocity = [4, 3, 2]
+mass = 0.1
+[networks.room.masses.ball]
+positions = [[0.5, -0.5, 0.3]]
+velocity = [3, -4, 1]
+mass = 1
+[[networks.room.constraints]]
+of = ["die"]
+rigid = true
+[[networks.room.constraints]]
+faces = [{ of = ["box"], triangles = [
+    [3, 2, 0], [1, 3, 0], [7, 5, 4], [6, 7, 4], [5, 1, 0], [4, 5, 0], [7, 6, 2], [3, 7, 2], [6, 4, 0], [2, 6, 0], [7, 3, 1], [5, 7, 1],
+] }, { of = ["die"], hull = true }, { of = ["ball"], radius = 0.1 }]
+friction = 0.3
+restitution = 0.8
+"#;
+    let mut world = started(THROWN, &[]);
+    let mut turned = false;
+    for step in 0..200 {
+        world.step().unwrap();
+        let rows = world.rows(0);
+        for (row, place) in rows.positions.iter().enumerate().skip(8) {
+            let radius = if row == 16 { 0.1 } else { 0.0 };
+            let left = (1.0 - place.x.abs()).min(1.0 - place.y.abs()).min(place.z.min(1.0 - place.z));
+            // 1e-7 of the way of a step
+            assert!(left - radius > -1e-8, "period {step}: row {row} at {place:?}");
+        }
+        turned |= rows.velocities[16].x < 0.0;
+    }
+    assert!(turned);
 }
 
 /// Bodies of several shapes that are thrown at a fixed one any way: what comes apart has no more energy than it came with, whatever meets what.

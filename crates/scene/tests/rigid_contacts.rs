@@ -3,7 +3,7 @@
 use souple_engine::{Force, Pair, World};
 use souple_models::network::{RigidBalls, SidedConstraints};
 
-use crate::constraints::{read, started};
+use crate::worlds::{assert_goes_on, read, started};
 
 /// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
 const FALLING: &str = r#"
@@ -104,25 +104,7 @@ fn balls_are_rods_that_keep_apart() {
 /// A run that goes on from its state makes the same bits, and so do any number of threads.
 #[test]
 fn contacts_go_on_from_state() {
-    let mut world = started(FALLING, &[]);
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-    });
-    let mut resumed = read(FALLING, &[]).unwrap().model.start(world.state().clone());
-    (0..20).for_each(|_| {
-        world.step().unwrap();
-        resumed.step().unwrap();
-    });
-    assert!(world.state() == resumed.state());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-    let threaded = pool.install(|| {
-        let mut world = started(FALLING, &[]);
-        (0..40).for_each(|_| {
-            world.step().unwrap();
-        });
-        world.state().clone()
-    });
-    assert!(world.state() == &threaded);
+    assert_goes_on(FALLING, 20);
 }
 
 const LATE: &str = "world.collisions=\"one_period_late\"";

@@ -3,7 +3,7 @@
 use souple_engine::{StepError, World};
 use souple_math::Vec3;
 
-use crate::constraints::started;
+use crate::worlds::{dissipated, started};
 
 /// Masses of 1 kg, the first of which are fixed, on rods that bear 3 N, with forces on them [N].
 struct Truss {
@@ -14,11 +14,6 @@ struct Truss {
 }
 
 const LIMIT: f64 = 3.0;
-
-/// By all forces [J].
-fn dissipated(world: &mut World) -> f64 {
-    world.energy().by_force.iter().map(|(_, energy)| energy.dissipated).sum()
-}
 
 impl Truss {
     /// Bays of a metre, each braced by both diagonals, held at the left and loaded at its lower right.

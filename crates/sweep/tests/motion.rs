@@ -341,7 +341,7 @@ fn several_starts_find_the_better_of_two() {
     assert!(answers[0].1 + answers[1].1 == 6 && answers[0].1 > 0 && (answers[1].0 / late - 1.0).abs() < 1e-6);
     // what comes to nothing is told once, with how many starts came to it
     let far = "kind = \"spacetime\"\nstarts = 3\n[[plan.keys]]\ntime = 1\nprobe = \"place\"\nvalue = 100";
-    let none = plan("bounded_cart", &[("kind = \"spacetime\"", far)]).err().expect("a refusal").to_string();
+    let none = plan("bounded_cart", &[("kind = \"spacetime\"", far)]).unwrap_err().to_string();
     assert!(
         none.contains("none of 3 starts comes to a motion that meets its keys: 3 starts: no motion"),
         "{none}"

@@ -6,18 +6,13 @@
 //! Where it is searched beside the steps of a period, for the next one, pairs are listed from farther off, and once two balls may have come nearer
 //! than that allows for steps search anew. Velocities at a late search are not in State, so that what steps rely on is a length, not a time.
 
-use std::any::Any;
 use std::ops::Range;
 
-use souple_engine::{
-    Configuration, ContactPoint, Declaration, Detection, Energy, Force, ImpactLaw, Pair, Scratch, Sides,
-    TangentWeights, Unilateral, make_room,
-};
+use souple_engine::{Configuration, Detection, ImpactLaw, Pair, Scratch, Sides, Unilateral, make_room};
 use souple_math::Vec3;
-use souple_solve::BlockMatrix;
 
 use super::crowd_grid::Grid;
-use super::sided::visit_contacts;
+use super::parting::Apart;
 
 /// What rigid balls are made of.
 #[derive(Debug)]
@@ -136,73 +131,26 @@ impl Unilateral for RigidBalls {
     }
 }
 
-impl Force for RigidBalls {
+impl Apart for RigidBalls {
     fn name(&self) -> &str {
         &self.0.name
     }
 
-    fn declaration(&self) -> Declaration {
-        Declaration {
-            conservative: false,
-            velocity_terms: false,
-            symmetric_tangent: true,
-            // at centres friction leaves a pair a torque
-            internal: self.0.law.friction == 0.0,
-            changing_pattern: true,
-        }
+    fn is_internal(&self) -> bool {
+        // at centres friction leaves a pair a torque
+        self.0.law.friction == 0.0
     }
 
-    fn memory_len(&self) -> usize {
-        1
-    }
-
-    fn tangent_reads_memory(&self) -> bool {
-        false
-    }
-
-    fn new_scratch(&self) -> Scratch {
-        Box::new(Search::default())
-    }
-
-    // what collisions and friction take
-    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        Energy { stored: 0.0, dissipated: -at.memory[0] }
-    }
-
-    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        for (contact, pair) in at.pairs.iter().enumerate() {
-            let force = Unilateral::force(self, contact, at.memory, at.pairs);
-            let [a, b] = ends(pair);
-            out[a as usize] += force;
-            out[b as usize] -= force;
-        }
-    }
-
-    fn add_differential(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _delta: &[Vec3],
-        _scratch: &mut Scratch,
-        _out: &mut [Vec3],
-    ) {
+    fn has_pairs(&self) -> bool {
+        true
     }
 
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         pairs.iter().for_each(|pair| visit(&ends(pair)));
     }
 
-    fn add_blocks(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _scratch: &mut Scratch,
-        _matrix: &mut BlockMatrix,
-    ) {
-    }
-
-    fn unilateral(&self) -> Option<&dyn Unilateral> {
-        Some(self)
+    fn new_scratch(&self) -> Scratch {
+        Box::new(Search::default())
     }
 
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
@@ -259,19 +207,11 @@ impl Force for RigidBalls {
             && !self.is_held(pair.a as u32, pair.b as u32)
     }
 
-    fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        visit_contacts(self, at, visit);
-    }
-
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
         scratch.downcast_ref().map_or(0, |Search { grid, ways }| grid.bytes() + 8 * ways.capacity())
     }
 
     fn bytes(&self) -> usize {
         size_of_val(self.0.held.as_slice())
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }

@@ -3,16 +3,10 @@
 //! A rod of which masses come no nearer than its length is what two balls do, one that they come no farther than is a string; a plane or
 //! a surface keeps masses on one side. The forces, impulses where masses collide, are found by the step ([`souple_engine::unilateral`]).
 
-use std::any::Any;
-
-use souple_engine::unilateral::MOST_SIDES;
-use souple_engine::{
-    Configuration, ContactPoint, Declaration, Energy, Force, ImpactLaw, LinkShown, LinkState, Pair, Scratch,
-    Sides, TangentWeights, Unilateral,
-};
+use souple_engine::{Configuration, ImpactLaw, LinkShown, LinkState, Pair, Sides, Unilateral};
 use souple_math::Vec3;
-use souple_solve::BlockMatrix;
 
+use super::parting::Apart;
 use super::relations::Relation;
 
 /// From which side a relation `g` holds.
@@ -118,72 +112,25 @@ impl Unilateral for SidedConstraints {
     }
 }
 
-impl Force for SidedConstraints {
+impl Apart for SidedConstraints {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn declaration(&self) -> Declaration {
-        Declaration {
-            conservative: false,
-            velocity_terms: false,
-            symmetric_tangent: true,
-            internal: false,
-            changing_pattern: false,
-        }
+    fn is_internal(&self) -> bool {
+        false
+    }
+
+    fn has_pairs(&self) -> bool {
+        false
     }
 
     fn memory_len(&self) -> usize {
         1 + OF_EACH * self.relations.len()
     }
 
-    fn tangent_reads_memory(&self) -> bool {
-        false
-    }
-
-    // what collisions and friction take, less what moving walls give
-    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        Energy { stored: 0.0, dissipated: -at.memory[0] }
-    }
-
-    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        for contact in 0..self.relations.len() {
-            let force = Unilateral::force(self, contact, at.memory, at.pairs);
-            for (row, weight) in self.sides(contact, at.pairs, at.positions).iter() {
-                out[row] += force * weight;
-            }
-        }
-    }
-
-    fn add_differential(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _delta: &[Vec3],
-        _scratch: &mut Scratch,
-        _out: &mut [Vec3],
-    ) {
-    }
-
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         self.relations.iter().for_each(|relation| visit(relation.rows()));
-    }
-
-    fn add_blocks(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _scratch: &mut Scratch,
-        _matrix: &mut BlockMatrix,
-    ) {
-    }
-
-    fn unilateral(&self) -> Option<&dyn Unilateral> {
-        Some(self)
-    }
-
-    fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        visit_contacts(self, at, visit);
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
@@ -194,43 +141,12 @@ impl Force for SidedConstraints {
         for (index, relation) in self.relations.iter().enumerate() {
             let Some(ends) = relation.ends() else { continue };
             let along = relation.slope(at.positions, at.time).unwrap_or(Vec3::ZERO);
-            let push = Unilateral::force(self, index, at.memory, at.pairs).dot(along);
+            let push = self.force(index, at.memory, at.pairs).dot(along);
             visit(&LinkShown { ends, state: LinkState::In(0), push });
         }
     }
 
     fn bytes(&self) -> usize {
         self.relations.iter().map(|relation| size_of_val(&**relation) + 4 * relation.rows().len()).sum()
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
-    }
-}
-
-/// Contacts that press, as the forces that were found last and the rows as they stand have them.
-pub(super) fn visit_contacts(of: &dyn Unilateral, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-    for contact in 0..of.contact_count(at.pairs) {
-        let force = of.force(contact, at.memory, at.pairs);
-        let slope = of.slope(contact, at.pairs, at.positions, at.time);
-        let Some(normal) = slope.try_normalised().filter(|_| force != Vec3::ZERO) else { continue };
-        let normal_force = normal * normal.dot(force);
-        let gap = of.gap(contact, at.pairs, at.positions, at.time) / slope.length();
-        let sides = of.sides(contact, at.pairs, at.positions);
-        let mut against = [(0, 0.0); MOST_SIDES];
-        let mut count = 0;
-        for (row, share) in sides.second() {
-            against[count] = (row as u32, share);
-            count += 1;
-        }
-        for (row, share) in sides.first() {
-            visit(&ContactPoint {
-                row: row as u32,
-                against: &against[..count],
-                penetration: (-gap).max(0.0),
-                normal_force: normal_force * share,
-                friction: (force - normal_force) * share,
-            });
-        }
     }
 }

@@ -93,14 +93,14 @@ impl Features {
         self.faces.extend(body.triangles());
         self.edges.extend(edges_of(body.triangles()));
         let own = &self.edges[edges..];
+        let mut ways: Vec<[u32; 2]> =
+            own.iter().flat_map(|Edge { ends: [a, b], .. }| [[*a, *b], [*b, *a]]).collect();
+        ways.sort_unstable();
         for row in body.rows() {
             let first = self.neighbours.len();
-            let others = own.iter().filter_map(|edge| match edge.ends {
-                [a, b] if a == row => Some(b),
-                [a, b] if b == row => Some(a),
-                _ => None,
-            });
-            self.neighbours.extend(others);
+            let begin = ways.partition_point(|[from, _]| *from < row);
+            let of_row = ways[begin..].iter().take_while(|[from, _]| *from == row);
+            self.neighbours.extend(of_row.map(|[_, to]| *to));
             self.corners.push(Corner { row, neighbours: first..self.neighbours.len() });
         }
         let length = |edge: &Edge| {

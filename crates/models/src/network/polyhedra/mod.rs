@@ -11,19 +11,13 @@ mod features;
 mod meeting;
 mod search;
 
-use std::any::Any;
-
-use souple_engine::{
-    Configuration, ContactPoint, Declaration, Detection, Energy, Force, ImpactLaw, Pair, Scratch, Sides,
-    TangentWeights, Unilateral,
-};
+use souple_engine::{Configuration, Detection, ImpactLaw, Pair, Scratch, Sides, Unilateral};
 use souple_math::Vec3;
-use souple_solve::BlockMatrix;
 
 use self::features::Features;
 use self::meeting::Meets;
 use self::search::Search;
-use super::sided::visit_contacts;
+use super::parting::Apart;
 
 pub use self::entered::Entered;
 pub use self::features::Polyhedron;
@@ -148,59 +142,19 @@ impl Unilateral for Polyhedra {
     }
 }
 
-impl Force for Polyhedra {
+impl Apart for Polyhedra {
     fn name(&self) -> &str {
         &self.name
     }
 
-    fn declaration(&self) -> Declaration {
+    fn is_internal(&self) -> bool {
         let has_balls = self.features.bodies.iter().any(|body| body.radius > 0.0);
-        Declaration {
-            conservative: false,
-            velocity_terms: false,
-            symmetric_tangent: true,
-            // masses have no rotation: friction at the centres of balls leaves a torque
-            internal: self.law.friction == 0.0 || !has_balls,
-            changing_pattern: true,
-        }
+        // masses have no rotation: friction at the centres of balls leaves a torque
+        self.law.friction == 0.0 || !has_balls
     }
 
-    fn memory_len(&self) -> usize {
-        1
-    }
-
-    fn tangent_reads_memory(&self) -> bool {
-        false
-    }
-
-    fn new_scratch(&self) -> Scratch {
-        Box::new(Search::default())
-    }
-
-    // what collisions and friction take
-    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        Energy { stored: 0.0, dissipated: -at.memory[0] }
-    }
-
-    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        for contact in 0..at.pairs.len() {
-            let force = Unilateral::force(self, contact, at.memory, at.pairs);
-            if force != Vec3::ZERO {
-                for (row, weight) in self.sides(contact, at.pairs, at.positions).iter() {
-                    out[row] += force * weight;
-                }
-            }
-        }
-    }
-
-    fn add_differential(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _delta: &[Vec3],
-        _scratch: &mut Scratch,
-        _out: &mut [Vec3],
-    ) {
+    fn has_pairs(&self) -> bool {
+        true
     }
 
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -224,17 +178,8 @@ impl Force for Polyhedra {
         }
     }
 
-    fn add_blocks(
-        &self,
-        _at: &Configuration,
-        _weights: TangentWeights,
-        _scratch: &mut Scratch,
-        _matrix: &mut BlockMatrix,
-    ) {
-    }
-
-    fn unilateral(&self) -> Option<&dyn Unilateral> {
-        Some(self)
+    fn new_scratch(&self) -> Scratch {
+        Box::new(Search::default())
     }
 
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
@@ -260,19 +205,11 @@ impl Force for Polyhedra {
             && self.features.may_meet([one.min(other), one.max(other)])
     }
 
-    fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        visit_contacts(self, at, visit);
-    }
-
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
         scratch.downcast_ref().map_or(0, Search::bytes)
     }
 
     fn bytes(&self) -> usize {
         self.features.bytes()
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }

@@ -10,7 +10,8 @@ use souple_models::network::relations::{
     Acceleration, Angle, Area, Direction, Guide, Joint, Relation, Rod, Surface, Volume,
 };
 use souple_models::network::{
-    Constraints, Keeping, Polyhedra, RigidBalls, RigidBallsDescription, Sense, Sided, SidedConstraints,
+    Constraints, Keeping, Parting, Polyhedra, RigidBalls, RigidBallsDescription, Sense, Sided,
+    SidedConstraints,
 };
 
 use super::super::bodies::Placed;
@@ -44,9 +45,9 @@ impl Made {
     pub fn into_force(self) -> Box<dyn Force> {
         match self {
             Self::Kept(constraints) => Box::new(constraints),
-            Self::Sided(constraints) => Box::new(constraints),
-            Self::Balls(balls) => Box::new(balls),
-            Self::Faces(faces) => Box::new(faces),
+            Self::Sided(constraints) => Box::new(Parting(constraints)),
+            Self::Balls(balls) => Box::new(Parting(balls)),
+            Self::Faces(faces) => Box::new(Parting(faces)),
         }
     }
 

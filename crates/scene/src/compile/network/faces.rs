@@ -48,8 +48,9 @@ fn triangles_of(form: &FacesForm, name: &str, places: &[Vec3]) -> Result<Vec<[u3
             _ => Ok(triangles.clone()),
         },
         FacesForm::Hull if count > MOST_HULL_POINTS => {
-            let message = format!("`{name}` has {count} masses, and a hull is found of {MOST_HULL_POINTS}");
-            Err((message, "`triangles`, or fewer masses".to_owned()))
+            let message =
+                format!("`{name}` has {count} masses, and a hull is found of {MOST_HULL_POINTS} at most");
+            Err((message, format!("`triangles`, or {MOST_HULL_POINTS} masses at most")))
         }
         FacesForm::Hull => convex_hull(places).ok_or_else(|| {
             let message = format!("the masses of `{name}` rest in one plane, and have no hull");

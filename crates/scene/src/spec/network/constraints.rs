@@ -329,16 +329,7 @@ impl ConstraintSpec {
         let written = reader.written(KINDS);
         let kind = match written[..] {
             ["faces"] => ConstraintKind::faces(&of, reader),
-            ["rigid"] if reader.boolean("rigid") => Some(ConstraintKind::Rigid),
-            ["rigid"] => {
-                reader.log().add(
-                    Code::Conflict,
-                    &reader.site_of("rigid"),
-                    "it is said that nothing is constrained",
-                    "`rigid = true`",
-                );
-                None
-            }
+            ["rigid"] => ConstraintKind::rigid(reader),
             [kind] => reader.table(kind).and_then(|table| ConstraintKind::read(kind, &of, &table)),
             _ => {
                 let message = match written.len() {
@@ -487,6 +478,16 @@ impl ConstraintKind {
     /// Whether it is of what keeps out of each other, wherever it comes near.
     fn keeps_apart(&self) -> bool {
         matches!(self, Self::Balls(_) | Self::Faces(_))
+    }
+
+    fn rigid(reader: &Reader) -> Option<Self> {
+        // what is no boolean has been told
+        if reader.reading("rigid")?.boolean()? {
+            return Some(Self::Rigid);
+        }
+        let message = "it is said that nothing is constrained, by `rigid = false`";
+        reader.log().add(Code::Conflict, &reader.site_of("rigid"), message, "`rigid = true`");
+        None
     }
 
     fn faces(of: &[String], reader: &Reader) -> Option<Self> {

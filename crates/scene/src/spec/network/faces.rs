@@ -32,6 +32,7 @@ pub struct FacesSpec {
     /// Each a body; all masses are one where there are none.
     pub of: Vec<String>,
     pub form: FacesForm,
+    /// Where the form is written.
     pub site: Site,
 }
 
@@ -46,17 +47,28 @@ pub enum FacesForm {
 
 impl FacesSpec {
     pub(super) fn read(reader: &Reader) -> Option<Self> {
-        let form = match reader.written(&["triangles", "hull", "radius"])[..] {
-            ["triangles"] => FacesForm::Triangles(triangles(reader, &[1, 0])?),
-            ["hull"] if reader.boolean("hull") => FacesForm::Hull,
-            ["radius"] => FacesForm::Balls(reader.maybe_number("radius")?),
-            _ => {
-                let message = "a body has triangles, a hull, or balls of a radius";
-                let expected = "`triangles`, `hull = true` or `radius`, one of them";
-                reader.log().add(Code::Conflict, &reader.site(), message, expected);
-                return None;
-            }
+        let (form, site) = match reader.written(&["triangles", "hull", "radius"])[..] {
+            ["triangles"] => (FacesForm::Triangles(triangles(reader, &[1, 0])?), reader.site_of("triangles")),
+            ["hull"] => (Self::hull(reader)?, reader.site_of("hull")),
+            ["radius"] => (FacesForm::Balls(reader.maybe_number("radius")?), reader.site_of("radius")),
+            [] => return Self::refuse(reader, &reader.site(), "none"),
+            ref several => return Self::refuse(reader, &reader.site(), &several.join(" and ")),
         };
-        Some(Self { of: reader.texts("of"), form, site: reader.site() })
+        Some(Self { of: reader.texts("of"), form, site })
+    }
+
+    fn hull(reader: &Reader) -> Option<FacesForm> {
+        // what is no boolean has been told
+        match reader.reading("hull")?.boolean()? {
+            true => Some(FacesForm::Hull),
+            false => Self::refuse(reader, &reader.site_of("hull"), "`hull = false`"),
+        }
+    }
+
+    fn refuse<T>(reader: &Reader, site: &Site, what: &str) -> Option<T> {
+        let message = format!("a body has triangles, a hull, or balls of a radius: of these this has {what}");
+        let expected = "`triangles`, `hull = true` or `radius`, one of them";
+        reader.log().add(Code::Conflict, site, message, expected);
+        None
     }
 }
