@@ -235,6 +235,12 @@ fn what_has_entered_is_told() {
     for within in [[0.2, 0.3, -1e-6], [0.2, 0.3, -0.5], [0.1, 0.1, -0.9], [0.0, 0.3, -0.01]] {
         assert!(entered(within).is_some(), "{within:?}");
     }
+    // with all corners on faces of the other, or in their planes
+    for aligned in
+        [[0.0, 0.0, -0.5], [0.0, 0.0, -1.0], [0.5, 0.0, -1.0], [0.5, 0.0, -0.5], [0.995, 0.005, -1.0]]
+    {
+        assert!(entered(aligned).is_some(), "{aligned:?}");
+    }
     let mut positions = corners([0.0; 3], [1.0; 3]);
     positions.extend(corners([0.3; 3], [0.7; 3]));
     positions.push(Vec3::new(0.5, 0.5, 1.1));

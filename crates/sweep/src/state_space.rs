@@ -212,13 +212,15 @@ fn refused(place: &str, text: &str, error: &ParseError, expected: &str) -> Sweep
 fn levels_of((name, value): (&String, &Value)) -> Result<(String, Vec<f64>), SweepError> {
     let numbers = value.as_array().and_then(|list| list.iter().map(|it| as_quantity(it, "N")).collect());
     let is_good = |levels: &Vec<f64>| {
-        !levels.is_empty() && (1..levels.len()).all(|at| !levels[..at].contains(&levels[at]))
+        !levels.is_empty()
+            && levels.iter().all(|level| level.is_finite())
+            && (1..levels.len()).all(|at| !levels[..at].contains(&levels[at]))
     };
     let levels = numbers.filter(is_good).ok_or_else(|| {
         SweepError::value(
             format!("plan.levels.\"{name}\""),
             value.to_string(),
-            "a list of different commands [N]",
+            "a list of different finite commands [N]",
         )
     })?;
     Ok((name.clone(), levels))

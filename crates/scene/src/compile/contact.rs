@@ -56,6 +56,10 @@ fn later_dates(surface: &OpeningSurface) -> impl Iterator<Item = f64> {
 
 /// All contacts.
 pub fn add(draft: &mut Draft) {
+    // those that nothing touches are refused as well where they cannot be
+    for chosen in draft.spec.shapes.iter().filter_map(|shape| shape.shape.as_ref()) {
+        built(draft, chosen);
+    }
     let mut added: Vec<(usize, Box<dyn Force>)> = Vec::new();
     let mut joints = Vec::new();
     for contact in &draft.spec.contacts {

@@ -157,7 +157,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     for system in &systems {
         let longest = system["longest_stable_step_seconds"].as_f64();
-        let stable = longest.map_or("any step is stable".to_owned(), |step| {
+        let stable = longest.map_or("any step is stable about the first state".to_owned(), |step| {
             let of =
                 system["stiffest_force"].as_str().map_or_else(String::new, |name| format!(", by `{name}`"));
             format!("longest stable step {step:.3e} s{of}")

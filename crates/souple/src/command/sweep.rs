@@ -6,8 +6,8 @@ use serde_json::json;
 use souple_io::Column;
 use souple_sweep::{
     Database, Ending, Fit, FoundMotion, KeyState, Kind, Motion, Planner, Progress, Search, Seen, Study,
-    SweepError, Tabulation, Tabulator, Unknown, When, Workers, fingerprints, graphs, sweep as make_runs,
-    table_of, with_unit,
+    SweepError, Tabulation, Tabulator, Unknown, When, Windows, Workers, fingerprints, graphs,
+    sweep as make_runs, table_of, with_unit,
 };
 use souple_table::counted;
 
@@ -243,7 +243,10 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);
     let found = Planner { study, motion, count, stop: &interruption }.run(&watch)?;
     drop(meter);
-    let Some(found) = found else { return Ok(End::Interrupted) };
+    let Some(found) = found else {
+        print_note(format_args!("interrupted before a plan was found: {} is not written", out.display()));
+        return Ok(End::Interrupted);
+    };
     let columns = found.columns();
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     keep_others(&out, &names)?;
@@ -258,13 +261,17 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
         return Ok(End::Done);
     }
     let iterations = counted(found.iterations as u64, "iteration");
-    let how = match found.ending {
+    let has_windows = how.is_some_and(|how| how.windows != Windows::Whole);
+    let less = if has_windows { "; `plan.windows` that are longer or share more take fewer" } else { "" };
+    let why = match found.ending {
         Ending::Stalled => format!("no step came nearer after {iterations}"),
         _ => {
-            format!("it was still on its way after {iterations}, as many as there may be (`plan.iterations`)")
+            format!(
+                "it was still on its way after {iterations}, as many as there may be (`plan.iterations`{less})"
+            )
         }
     };
-    print_note(format_args!("warning: {how}: keys or the least effort are not reached"));
+    print_note(format_args!("warning: {why}: keys or the least effort are not reached"));
     Ok(End::Failed)
 }
 

@@ -181,7 +181,7 @@ impl Course {
     pub fn key_that_is_not_reached(&self, key: usize) -> SweepError {
         SweepError::value(
             format!("plan.keys[{}]", self.keys[key].of),
-            "what no command changes, or what other keys say already",
+            "what no command changes, or what other keys say already or contradict",
             "keys that commands reach each by itself, with at least as many commands as keys",
         )
     }

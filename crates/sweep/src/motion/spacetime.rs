@@ -288,7 +288,7 @@ impl<'a> Search<'a> {
             program.solve(&|| self.course.is_stopped()).map_err(|why| match why {
                 NoLeast::Interrupted => failed("it was interrupted"),
                 NoLeast::Unsolved => {
-                    let expected = "keys and `weights` of alike sizes, that commands reach";
+                    let expected = "keys and `weights` of alike sizes, that commands reach, and nothing on the way that stops the motion as a wall does";
                     SweepError::value("plan.keys", "a motion with no commands that can be computed", expected)
                 }
             })
