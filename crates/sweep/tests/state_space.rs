@@ -122,7 +122,7 @@ fn what_cannot_be_tabulated_is_named() {
         (target, "", "`plan.target` is missing"),
         (target, "target = \"x < -1.19 and v > 2.3\"", "`plan.target` is where nothing leads from"),
         ("[-8, 0, 8]", "[-9, 0, 8]", "is 9 N; expected up to the 8 N that its actuator gives"),
-        ("[-8, 0, 8]", "[8, 8]", "expected a list of different commands"),
+        ("[-8, 0, 8]", "[8, 8]", "expected a list of different finite commands"),
         ("cart.drive", "cart.drives", "`plan.levels` is cart.drives; expected cart.drive"),
         (target, &format!("{target}\ncost = \"drive - 9\""), "`plan.cost` is -17 at x = -1.2, v = -2.4"),
         (target, &format!("{target}\ncost = \"thrust\""), "expected a formula of x, v, drive"),

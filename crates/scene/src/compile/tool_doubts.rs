@@ -1,5 +1,7 @@
 //! Tools that start where nothing touches them, and hands whose coupling is too stiff for them.
 
+use std::collections::BTreeSet;
+
 use souple_engine::Motion;
 use souple_engine::obstacle::Side;
 use souple_haptics::{Arm, Coupling, TICK};
@@ -46,7 +48,9 @@ pub fn warn(draft: &mut Draft) {
         let place = draft.place(&spec.site);
         warnings.extend(doubts.into_iter().map(|doubt| format!("{place}: hand `{}`: {doubt}", spec.name)));
     }
-    draft.warnings.extend(warnings);
+    // several contacts may be of one tool and one body
+    let mut told = BTreeSet::new();
+    draft.warnings.extend(warnings.into_iter().filter(|warning| told.insert(warning.clone())));
 }
 
 /// A tool, what moves it, and where it is written.
