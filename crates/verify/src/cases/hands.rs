@@ -104,7 +104,7 @@ pub(super) const CASES: &[Case] = &[
         settings: &["hands.right.device.lost_at=0.8", "hands.right.device.lost_for=100"],
         reading: Reading::component("force", 2).after(90),
         source: "nobody is there to feel anything",
-        mutation: "hands.right.device.lost_for=0",
+        mutation: "hands.right.device.lost_at=100",
         ..HAND
     },
     Case {

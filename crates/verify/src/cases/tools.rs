@@ -319,7 +319,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("force", 2).after(1300),
         source: "nobody is there to feel anything",
         tolerance: Tolerance::Absolute(0.0),
-        mutation: "hands.right.device.lost_for=0",
+        mutation: "hands.right.device.lost_at=100",
         ..LIVER
     },
     Case {
