@@ -10,16 +10,29 @@ use super::{MOST_SWEEPS, SWEEPS_BEFORE};
 /// What is between a mass and what it stands on.
 #[derive(Clone, Copy)]
 struct Joint {
-    /// The number of the mass above it; that below it is the one before, or the floor.
-    above: usize,
+    /// Masses by their numbers, or what does not move.
+    above: Option<usize>,
+    below: Option<usize>,
     law: Law,
     off: Vec3,
 }
 
+impl Joint {
+    /// What a unit of force in another moves this by: masses that are on the same side of both, less those that are not.
+    fn moved_by(&self, other: &Self) -> f64 {
+        let same =
+            |one: Option<usize>, other: Option<usize>| f64::from(u8::from(one.is_some() && one == other));
+        same(self.above, other.above) + same(self.below, other.below)
+            - same(self.above, other.below)
+            - same(self.below, other.above)
+    }
+}
+
 /// Joints of a column, from the floor up, under weights of 1 N.
 fn column(count: usize, law: Law) -> Vec<Joint> {
-    let off = |above: usize| if above == 0 { -Vec3::X } else { Vec3::ZERO };
-    (0..count).map(|above| Joint { above, law, off: off(above) }).collect()
+    let off = |mass: usize| if mass == 0 { -Vec3::X } else { Vec3::ZERO };
+    let joint = |mass: usize| Joint { above: Some(mass), below: mass.checked_sub(1), law, off: off(mass) };
+    (0..count).map(joint).collect()
 }
 
 /// The problem of a step in which a force of 1 N moves a mass by a unit.
@@ -28,12 +41,10 @@ fn system(joints: &[Joint]) -> ContactSystem {
         ContactSystem { scale: 1.0, tightness: 1.0, starts: vec![0], ..ContactSystem::default() };
     for (row, joint) in joints.iter().enumerate() {
         for (column, other) in joints.iter().enumerate() {
-            let moved = match (joint.above, other.above) {
-                (0, 0) => 1.0,
-                (one, same) if one == same => 2.0,
-                (one, next) if one.abs_diff(next) == 1 => -1.0,
-                _ => continue,
-            };
+            let moved = joint.moved_by(other);
+            if moved == 0.0 {
+                continue;
+            }
             if row == column {
                 system.own.push(system.columns.len());
                 system.stiffest.push([moved; 2]);
@@ -79,15 +90,23 @@ fn by_sweeps(joints: &[Joint]) -> (Vec<Vec3>, u64) {
     (system.change.clone(), system.report.contact_iterations)
 }
 
-/// Forces of both are the same to what places may be off, 2e-8, times the most that one force in a column of `n` may change for that, `n²/2`.
+/// What a place may be off, a fifth of 1e-7: a sweep that changes none by more moves none by more than half of that after it was looked at.
+const OFF: f64 = 2e-8;
+
+/// The most that a force in a column of `n` changes for that: the floor bears the sum of what all above are off by, `n(n+1)/2`.
+fn uncertainty(count: usize) -> f64 {
+    OFF * 0.5 * (count * (count + 1)) as f64
+}
+
+/// Forces of both are the same to what either may be off.
 fn assert_same(one: &[Vec3], other: &[Vec3]) {
-    let most = 2.0 * 2e-8 * 0.5 * (one.len() as f64).powi(2);
+    let most = 2.0 * uncertainty(one.len());
     for (joint, (a, b)) in one.iter().zip(other).enumerate() {
         assert!((*a - *b).length() < most, "joint {joint}: {a:?} and {b:?}");
     }
 }
 
-/// A column bears its weight: each joint what is above it. With all joints closed conjugate gradients end after as many products as there are masses,
+/// A column bears its weight: each joint what is above it. With all joints closed conjugate residuals end after as many products as there are masses,
 /// where sweeps hand on what a joint bears by one joint each.
 #[test]
 fn columns_bear_their_weight() {
@@ -128,8 +147,8 @@ fn the_higher_of_two_places_bears() {
         .flat_map(|joint| [Joint { off: joint.off + Vec3::X * apart, ..joint }, joint])
         .collect();
     let (forces, rounds) = by_rounds(&joints);
-    // as of columns alone
-    let most = 2.0 * 2e-8 * 0.5 * (count as f64).powi(2);
+    // as of columns alone, of whose two places either may be off
+    let most = 2.0 * uncertainty(count);
     for (joint, pair) in forces.chunks(2).enumerate() {
         let weight = (count - joint) as f64;
         assert!(pair[0].x == 0.0 && (pair[1].x - weight).abs() < most, "{joint}: {pair:?}");
@@ -148,4 +167,38 @@ fn limits_are_met_as_by_sweeps() {
     assert!(forces.iter().all(|force| force.x.abs() <= 45.0));
     assert!(forces[0].x == 45.0 && forces[59].x < 45.0, "{forces:?}");
     assert!(rounds < sweeps, "{rounds}, by sweeps alone {sweeps}");
+}
+
+/// Masses between a floor and a ceiling that is a little too low: no forces open all gaps, and none has to. They bear their weight as a column beside them does, whose
+/// search on a face must not be led along what the others contradict each other by.
+#[test]
+fn what_is_squeezed_bears_its_weight() {
+    let (squeezed, beside) = (12, 80);
+    // so little that each joint of the column is asked for less than it may be off
+    for (too_near, friction) in [(5e-8, 0.0), (1e-7, 0.0), (1e-7, 0.4)] {
+        let law = Law::Cone(friction);
+        let mut joints = column(squeezed, law);
+        joints.push(Joint { above: None, below: Some(squeezed - 1), law, off: Vec3::X * (1.0 - too_near) });
+        let of = |mass: Option<usize>| mass.map(|mass| mass + squeezed);
+        let others = column(beside, law);
+        joints.extend(others.iter().map(|joint| Joint {
+            above: of(joint.above),
+            below: of(joint.below),
+            ..*joint
+        }));
+        let (forces, rounds) = by_rounds(&joints);
+        let weights =
+            (0..=squeezed).map(|joint| squeezed - joint).chain((0..beside).map(|joint| beside - joint));
+        let more: Vec<f64> =
+            forces.iter().zip(weights).map(|(force, weight)| force.x - weight as f64).collect();
+        // floor and ceiling may press against each other, by no more than weights had them do on the way
+        let pressed = more[squeezed];
+        assert!((0.0..squeezed as f64).contains(&pressed), "{pressed}");
+        // each product and each sweep may press by what the walls are too near
+        let most = rounds as f64 * too_near + 2.0 * uncertainty(beside);
+        for (joint, more) in more.iter().enumerate() {
+            let expected = if joint <= squeezed { pressed } else { 0.0 };
+            assert!((more - expected).abs() < most, "joint {joint}: {more} for {expected}, {most:e}");
+        }
+    }
 }

@@ -1,13 +1,19 @@
-//! Forces on the face of what forces may be that sweeps have found, by conjugate gradients.
+//! Forces on the face of what forces may be that sweeps have found, by conjugate residuals.
 //!
 //! Sweeps find soon which contacts bear, stick and slide, and slowly what a long chain of bodies bears with: each hands a change on to the next. With these
-//! sets held, forces are those with the least `½ δ·D δ + off·δ`, which conjugate gradients find in as many products with `D` as bodies have degrees
-//! of freedom. They go as far as forces stay what they may be; what comes to a limit is held there, and the search goes on
-//! without it (Dostál 1997). Of contacts that slide the friction is held too. `D` has directions in which it resists nothing, where more contacts bear than
-//! are needed: gradients have no share of these but for what contacts contradict each other by, along which it is gone to the next limit. Sweeps then
-//! let go of limits what is pushed from them, and alone tell whether forces are found (Silcowitz-Hansen, Niebe & Erleben 2010).
+//! sets held, what is left is `D δ = −off`, of as many unknowns as bodies have degrees of freedom at most, and is sought by conjugate residuals, with what each
+//! place resists alone as a preconditioner. They go as far as forces stay what they may be; what comes to a limit is held there, and the search goes on
+//! without it (Dostál 1997). Of contacts that slide the friction is held too, at what it was: where the normal force then bears less, the next sweep
+//! takes it back to its cone. Sweeps then let go of limits what is pushed from them, and alone tell whether forces are found
+//! (Silcowitz-Hansen, Niebe & Erleben 2010).
+//!
+//! `D` has directions in which it resists nothing, where more contacts bear than are needed, and contacts may contradict each other along these: in a row of
+//! bodies between walls that are a little too near no forces open all gaps. Conjugate gradients would go along such a direction ever farther the better the
+//! rest is solved; conjugate residuals end where the rest is. Then a force that the contradiction takes away is taken away: of two places at different
+//! heights the lower one bears nothing. Where it adds to all forces there is no end, and nothing is done.
 
 use souple_math::Vec3;
+use souple_solve::reduce::dot;
 
 use super::ContactSystem;
 use super::places::Law;
@@ -26,15 +32,23 @@ pub(super) enum Free {
 #[derive(Debug, Default)]
 pub(super) struct Face {
     free: Vec<Free>,
-    /// What forces are off on the face, and what they would change by if each were alone.
+    /// What gaps and slips are off on the face, what forces would change by for that if each were alone, and what that would move.
     residual: Vec<Vec3>,
     alone: Vec<Vec3>,
+    moved_alone: Vec<Vec3>,
+    /// What forces are changed by, what that moves, and what forces would change by for that.
     direction: Vec<Vec3>,
     product: Vec<Vec3>,
+    product_alone: Vec<Vec3>,
 }
 
-/// Of what a change moves alone, what it moves in fact, where it meets no resistance but that of rounding.
+/// Of what a change moves alone, what it moves in fact, where it meets no resistance but that of rounding and of what is left of the rest.
 const NO_RESISTANCE: f64 = 1e-13;
+/// Of the greatest change of a force, weighed by what it moves alone, what is not left of the rest: a chain of a thousand bodies resists with 1e-6 of what
+/// they do alone, and the root of [`NO_RESISTANCE`] over that is 3e-4.
+const SHARE: f64 = 1e-3;
+/// Of the way to where a force ends, that by which it may leave its cone before: without friction both are one place, to rounding of a root.
+const APEX: f64 = 1e-7;
 /// Of the greatest friction, what is less sticks.
 const SLIDES: f64 = 1.0 - 1e-9;
 /// Of what sweeps let be, what the search on a face does: what is left of all places comes together in one.
@@ -53,21 +67,23 @@ impl Free {
 impl Face {
     fn clear(&mut self, count: usize) {
         self.free.clear();
-        for list in [&mut self.residual, &mut self.alone, &mut self.direction, &mut self.product] {
+        for list in self.vectors_mut() {
             list.clear();
             list.resize(count, Vec3::ZERO);
         }
     }
 
-    pub(super) fn bytes(&self) -> usize {
-        let vectors = [&self.residual, &self.alone, &self.direction, &self.product];
-        size_of::<Vec3>() * vectors.map(Vec::capacity).iter().sum::<usize>()
-            + size_of::<Free>() * self.free.capacity()
+    fn vectors_mut(&mut self) -> [&mut Vec<Vec3>; 6] {
+        let Self { residual, alone, moved_alone, direction, product, product_alone, .. } = self;
+        [residual, alone, moved_alone, direction, product, product_alone]
     }
-}
 
-fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
+    pub(super) fn bytes(&self) -> usize {
+        let Self { residual, alone, moved_alone, direction, product, product_alone, free } = self;
+        let vectors = [residual, alone, moved_alone, direction, product, product_alone];
+        size_of::<Vec3>() * vectors.map(Vec::capacity).iter().sum::<usize>()
+            + size_of::<Free>() * free.capacity()
+    }
 }
 
 impl ContactSystem {
@@ -101,46 +117,66 @@ impl ContactSystem {
         }
     }
 
-    /// Goes on with conjugate gradients until the face is left at a limit, which is then held; false where it has come to its end.
+    /// Goes on with conjugate residuals until the face is left at a limit, which is then held; false where it has come to its end.
     fn follow(&mut self, face: &mut Face, last: u64) -> bool {
+        let count = self.places.len();
         self.report.contact_iterations += 1;
-        for place in 0..self.places.len() {
+        for place in 0..count {
             let off = self.off[place] + self.moved(place, &self.change);
             face.residual[place] = face.free[place].part(-off);
             face.alone[place] = self.alone(place, face.residual[place]);
         }
-        face.direction.copy_from_slice(&face.alone);
-        let mut size = dot(&face.residual, &face.alone);
+        face.direction.fill(Vec3::ZERO);
+        face.product.fill(Vec3::ZERO);
+        let mut resistance_before = f64::INFINITY;
         while !self.is_found(face) && self.report.contact_iterations < last {
             self.report.contact_iterations += 1;
-            for place in 0..self.places.len() {
-                face.product[place] = face.free[place].part(self.moved(place, &face.direction));
+            for place in 0..count {
+                face.moved_alone[place] = face.free[place].part(self.moved(place, &face.alone));
             }
-            let resistance = dot(&face.direction, &face.product);
-            let unresisted = resistance <= NO_RESISTANCE * self.resistance_alone(&face.direction);
-            let wanted = if unresisted { f64::INFINITY } else { size / resistance };
-            let limit = self.first_limit(face);
-            let way = limit.map_or(wanted, |(way, ..)| way.min(wanted));
+            let resistance = dot(&face.alone, &face.moved_alone);
+            if resistance <= NO_RESISTANCE * dot(&face.residual, &face.alone) {
+                return self.take_away(face);
+            }
+            for place in 0..count {
+                let kept = resistance / resistance_before;
+                face.direction[place] = face.alone[place] + face.direction[place] * kept;
+                face.product[place] = face.moved_alone[place] + face.product[place] * kept;
+                face.product_alone[place] = self.alone(place, face.product[place]);
+            }
+            resistance_before = resistance;
+            let wanted = resistance / dot(&face.product, &face.product_alone);
+            let limit = self.first_limit(face, 0.0).filter(|(way, ..)| *way <= wanted);
+            let way = limit.map_or(wanted, |(way, ..)| way);
             if !way.is_finite() {
                 return false;
             }
-            for place in 0..self.places.len() {
+            for place in 0..count {
                 self.change[place] += face.direction[place] * way;
+                face.residual[place] -= face.product[place] * way;
+                face.alone[place] -= face.product_alone[place] * way;
             }
-            if let Some((_, place, left)) = limit.filter(|(at, ..)| *at <= wanted) {
+            if let Some((_, place, left)) = limit {
                 self.hold(face, place, left);
                 return true;
             }
-            for place in 0..self.places.len() {
-                face.residual[place] -= face.product[place] * way;
-                face.alone[place] = self.alone(place, face.residual[place]);
-            }
-            let size_before = std::mem::replace(&mut size, dot(&face.residual, &face.alone));
-            for place in 0..self.places.len() {
-                face.direction[place] = face.alone[place] + face.direction[place] * (size / size_before);
-            }
         }
         false
+    }
+
+    /// Of what contacts contradict each other by, which is all that is left and meets no resistance: goes along it until a force that it takes away has
+    /// come to a limit. False where there is none.
+    fn take_away(&mut self, face: &mut Face) -> bool {
+        face.direction.copy_from_slice(&face.alone);
+        let greatest = (0..self.places.len())
+            .map(|place| self.weight_of(place, face.direction[place]))
+            .fold(0.0, f64::max);
+        let Some((way, place, left)) = self.first_limit(face, SHARE * greatest) else { return false };
+        for (change, by) in self.change.iter_mut().zip(&face.direction) {
+            *change += *by * way;
+        }
+        self.hold(face, place, left);
+        true
     }
 
     /// What force at a place would bring its own gap and slip to where they are to be.
@@ -149,12 +185,10 @@ impl ContactSystem {
         Vec3::new(off.x * normal, off.y * tangent, off.z * tangent)
     }
 
-    /// `δ·D δ` if forces moved nothing but their own places.
-    fn resistance_alone(&self, change: &[Vec3]) -> f64 {
-        let of_place = |(by, [normal, tangent]): (&Vec3, &[f64; 2])| {
-            by.x * by.x * normal + (by.y * by.y + by.z * by.z) * tangent
-        };
-        change.iter().zip(&self.stiffest).map(of_place).sum()
+    /// `√(δ·D δ)` if the change of a force moved nothing but its own place.
+    fn weight_of(&self, place: usize, change: Vec3) -> f64 {
+        let [normal, tangent] = self.stiffest[place];
+        (change.x * change.x * normal + (change.y * change.y + change.z * change.z) * tangent).sqrt()
     }
 
     /// Whether what is left is well below what sweeps would go on for.
@@ -164,37 +198,30 @@ impl ContactSystem {
         (0..self.places.len()).all(is_near)
     }
 
-    /// How far along the direction the first force comes to a limit, at which place, and what is free there then.
-    fn first_limit(&self, face: &Face) -> Option<(f64, usize, Free)> {
-        let mut first: Option<(f64, usize, Free)> = None;
-        for place in 0..self.places.len() {
-            if face.free[place] == Free::Nothing {
-                continue;
+    /// How far along the direction the first force comes to a limit, at which place, and what is free there then; of forces whose change weighs more than
+    /// the least.
+    fn first_limit(&self, face: &Face, least: f64) -> Option<(f64, usize, Free)> {
+        let limit_at = |place: &usize| {
+            let by = face.direction[*place];
+            if face.free[*place] == Free::Nothing || self.weight_of(*place, by) <= least {
+                return None;
             }
-            let (force, by) = (self.force_at(place), face.direction[place]);
-            let mut take = |way: f64, left: Free| {
-                if first.is_none_or(|(least, ..)| way < least) {
-                    first = Some((way, place, left));
+            let force = self.force_at(*place);
+            let (way, left) = match self.places[*place].law {
+                Law::Bounds(limit) => ((limit.copysign(by.x) - force.x) / by.x, Free::Nothing),
+                Law::Cone(friction) => {
+                    let apex = if by.x < 0.0 { force.x / -by.x } else { f64::INFINITY };
+                    let cone = way_to_cone(force, by, friction).filter(|_| face.free[*place] == Free::All);
+                    match cone {
+                        Some(way) if way < apex * (1.0 - APEX) => (way, Free::Normal),
+                        _ => (apex, Free::Nothing),
+                    }
                 }
             };
-            match self.places[place].law {
-                Law::Bounds(limit) if by.x != 0.0 => {
-                    take((limit.copysign(by.x) - force.x) / by.x, Free::Nothing)
-                }
-                Law::Bounds(_) => {}
-                Law::Cone(friction) => {
-                    if by.x < 0.0 {
-                        take(force.x / -by.x, Free::Nothing);
-                    }
-                    if let Some(way) =
-                        way_to_cone(force, by, friction).filter(|_| face.free[place] == Free::All)
-                    {
-                        take(way, Free::Normal);
-                    }
-                }
-            }
-        }
-        first
+            (way < f64::INFINITY).then_some((way, *place, left))
+        };
+        let places = (0..self.places.len()).filter_map(|place| limit_at(&place));
+        places.reduce(|first, next| if next.0 < first.0 { next } else { first })
     }
 
     /// Holds a force that has come to a limit there.

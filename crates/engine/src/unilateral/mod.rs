@@ -13,7 +13,7 @@
 //!
 //! Forces follow by a projected Gauss–Seidel method over contacts, whose changes are extrapolated as those of conjugate gradients are, with the
 //! matrix `D = h² J W̃ Jᵀ` of what forces move contacts by. `W̃` are inverse masses with relations: a rigid body is masses on exact rods. Where sweeps do not
-//! settle soon, as along chains of bodies, conjugate gradients follow over what sweeps have left free (`face.rs`), and sweeps that judge what these found
+//! settle soon, as along chains of bodies, conjugate residuals follow over what sweeps have left free (`face.rs`), and sweeps that judge what these found
 //! (Silcowitz-Hansen, Niebe & Erleben 2010). Multipliers of relations that yield are sought beside contacts, within bounds in the place of cones, where
 //! these decide which of them give way ([`crate::binding`]); the other relations are eliminated then.
 //! Where more contacts bear than are needed, of all forces that do the same those are found that are near to those of the step before.
