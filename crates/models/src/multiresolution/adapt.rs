@@ -37,12 +37,12 @@ impl LevelsForce {
             }
             Choice::Adaptive(criterion) => {
                 self.take_reference(criterion, positions, memory);
-                self.follow_criterion(division, positions, memory, work);
+                self.judge(criterion, positions, memory, work);
+                self.carry_out(criterion, division, memory, work);
+                return;
             }
         }
-        if self.coupling == Coupling::Transpose {
-            self.give_up_empty_points(memory, work);
-        }
+        self.give_up_empty_points(memory, work);
         work.refresh(self, memory);
     }
 
@@ -69,45 +69,61 @@ impl LevelsForce {
         (criterion.measure.at(&self.hierarchy, point, positions) - reference).max(0.0)
     }
 
-    fn follow_criterion(&self, division: &Division, positions: &[Vec3], memory: &mut [f64], work: &mut Work) {
-        let Choice::Adaptive(criterion) = &self.choice else { return };
+    /// Which points are to be subdivided, what is wanted most first, equal ones by number; and which may be regrouped.
+    fn judge(&self, criterion: &Criterion, positions: &[Vec3], memory: &[f64], work: &mut Work) {
         let hierarchy = &self.hierarchy;
-        let mut variation = std::mem::take(&mut work.variation);
+        let Work { active, roles, variation, wanted, unwanted, .. } = work;
         variation.clear();
         variation.resize(hierarchy.point_count(), 0.0);
-        for point in &work.active {
+        for point in active.iter() {
             let point = *point as usize;
             variation[point] = self.counted_variation(criterion, point, positions, memory);
         }
-        // what is wanted most comes first; equal ones by number
-        let (mut wanted, mut unwanted) =
-            (std::mem::take(&mut work.wanted), std::mem::take(&mut work.unwanted));
         wanted.clear();
         unwanted.clear();
-        for points in &hierarchy.levels[..hierarchy.finest()] {
-            for point in points.clone() {
-                match work.roles.of_point[point] {
-                    Role::Active if variation[point] > criterion.refine => wanted.push(point as u32),
-                    Role::Subdivided => {
-                        let successors = hierarchy.successors.get(point);
-                        if successors.iter().all(|child| work.roles.is_active(*child as usize)) {
-                            let of = |child: &u32| variation[*child as usize];
-                            let greatest = successors.iter().map(of).fold(0.0, f64::max);
-                            unwanted.push((greatest, point as u32));
-                        }
+        for point in hierarchy.levels[..hierarchy.finest()].iter().flat_map(Clone::clone) {
+            match roles.of_point[point] {
+                Role::Active if variation[point] > criterion.refine => wanted.push(point as u32),
+                Role::Subdivided => {
+                    let successors = hierarchy.successors.get(point);
+                    if successors.iter().all(|child| roles.is_active(*child as usize)) {
+                        let of = |child: &u32| variation[*child as usize];
+                        let greatest = successors.iter().map(of).fold(0.0, f64::max);
+                        unwanted.push((greatest, point as u32));
                     }
-                    _ => {}
                 }
+                _ => {}
             }
-        }
-        for (_, point) in unwanted.iter().filter(|(greatest, _)| *greatest < criterion.coarsen) {
-            self.subdivide(memory, *point as usize, false);
         }
         wanted.sort_unstable_by(|a, b| {
             variation[*b as usize].total_cmp(&variation[*a as usize]).then(a.cmp(b))
         });
-        work.variation = variation;
-        self.spend(division, &wanted, &mut unwanted, memory, work);
+    }
+
+    /// Regroups and subdivides what was judged, as far as the budget goes.
+    ///
+    /// Empty points among those that are regrouped are given up at once: at rest too each look would come to where it began. So what a look came
+    /// to is kept with its grounds.
+    fn carry_out(&self, criterion: &Criterion, division: &Division, memory: &mut [f64], work: &mut Work) {
+        let (wanted, mut unwanted) = (std::mem::take(&mut work.wanted), std::mem::take(&mut work.unwanted));
+        let is_regrouped = |(greatest, _): &&(f64, u32)| *greatest < criterion.coarsen;
+        let regrouped = || unwanted.iter().filter(is_regrouped).map(|(_, point)| *point);
+        let grounds = (self.budget, *division);
+        if !work.verdict.holds(grounds, &memory[..self.stays()], &wanted, regrouped()) {
+            work.verdict.begin(grounds, &memory[..self.stays()], &wanted, regrouped());
+            for (_, point) in unwanted.iter().filter(is_regrouped) {
+                self.subdivide(memory, *point as usize, false);
+            }
+            self.spend(division, &wanted, &mut unwanted, memory, work);
+            self.give_up_empty_points(memory, work);
+            // what an overdrawn budget regroups hangs on how much each point varies
+            let is_certain = memory[self.overload()] <= PATIENCE;
+            work.verdict.end(is_certain.then_some(&memory[..self.stays()]));
+        }
+        if let Some(after) = work.verdict.after() {
+            memory[..self.stays()].copy_from_slice(after);
+        }
+        work.refresh(self, memory);
         (work.wanted, work.unwanted) = (wanted, unwanted);
     }
 
@@ -152,9 +168,9 @@ impl LevelsForce {
         }
     }
 
-    /// A point whose matter finer points stand for has nothing to move: it is subdivided too.
+    /// A point whose matter finer points stand for has nothing to move: it is subdivided too. One way each level stands for all of its own.
     pub(super) fn give_up_empty_points(&self, memory: &mut [f64], work: &mut Work) {
-        loop {
+        while self.coupling == Coupling::Transpose {
             work.refresh(self, memory);
             let is_empty = |point: &&u32| {
                 let point = **point as usize;
@@ -216,6 +232,64 @@ impl LevelsForce {
         {
             *sum = (Vec3::from_array(*sum) + step).to_array();
         }
+    }
+}
+
+/// What a look came to, and on what grounds: the same grounds come to the same.
+#[derive(Clone, Debug, Default)]
+pub struct Verdict {
+    grounds: Option<(Option<f64>, Division)>,
+    /// What says who is at work, before.
+    before: Vec<f64>,
+    wanted: Vec<u32>,
+    regrouped: Vec<u32>,
+    /// The same after; empty where that hangs on more.
+    after: Vec<f64>,
+}
+
+impl Verdict {
+    fn holds(
+        &self,
+        grounds: (Option<f64>, Division),
+        before: &[f64],
+        wanted: &[u32],
+        regrouped: impl Iterator<Item = u32>,
+    ) -> bool {
+        !self.after.is_empty()
+            && self.grounds == Some(grounds)
+            && self.wanted == wanted
+            && self.regrouped.iter().copied().eq(regrouped)
+            && self.before == before
+    }
+
+    fn begin(
+        &mut self,
+        grounds: (Option<f64>, Division),
+        before: &[f64],
+        wanted: &[u32],
+        regrouped: impl Iterator<Item = u32>,
+    ) {
+        self.grounds = Some(grounds);
+        self.before.clear();
+        self.before.extend_from_slice(before);
+        self.wanted.clear();
+        self.wanted.extend_from_slice(wanted);
+        self.regrouped.clear();
+        self.regrouped.extend(regrouped);
+    }
+
+    fn end(&mut self, after: Option<&[f64]>) {
+        self.after.clear();
+        self.after.extend_from_slice(after.unwrap_or(&[]));
+    }
+
+    fn after(&self) -> Option<&[f64]> {
+        (!self.after.is_empty()).then_some(self.after.as_slice())
+    }
+
+    pub fn bytes(&self) -> usize {
+        8 * (self.before.capacity() + self.after.capacity())
+            + 4 * (self.wanted.capacity() + self.regrouped.capacity())
     }
 }
 

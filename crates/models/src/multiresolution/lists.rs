@@ -3,6 +3,7 @@
 use souple_engine::levels::{Division, Filter};
 use souple_math::{Mat3, Vec3};
 
+use super::adapt::Verdict;
 use super::elastic::{ALL_CORNERS, Due, LawMemory};
 use super::links::Loops;
 use super::roles::{Following, Roles};
@@ -50,6 +51,8 @@ pub struct Work {
     pub wanted: Vec<u32>,
     /// Points that may be regrouped, with the greatest variation around those in their place.
     pub unwanted: Vec<(f64, u32)>,
+    /// What the last look came to.
+    pub verdict: Verdict,
     /// The points that were active before.
     pub before: Vec<u32>,
     /// How fine all points were before.
@@ -94,6 +97,7 @@ impl Work {
             variation: Vec::new(),
             wanted: Vec::new(),
             unwanted: Vec::new(),
+            verdict: Verdict::default(),
             before: Vec::new(),
             were: Vec::new(),
             followed: Vec::new(),
@@ -434,6 +438,7 @@ impl Work {
             + size_of::<Vec3>() * self.sums.capacity()
             + 16 * self.unwanted.capacity()
             + self.following.bytes()
+            + self.verdict.bytes()
             + self.stress.bytes()
             + self.roles.of_point.capacity()
             + self.roles.is_live.capacity()

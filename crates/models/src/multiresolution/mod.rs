@@ -200,12 +200,21 @@ impl LevelsForce {
 
     /// Stresses that a step so divided evaluates with the coarsest mesh at work wherever so many cuts let it: no budget comes to less.
     pub fn least_evaluations(&self, division: &Division, cuts: usize) -> usize {
-        let mut work = Work::new(self);
         let mut memory = vec![0.0; self.memory_len()];
         memory[self.cuts_made()] = cuts as f64;
-        if self.coupling == Coupling::Transpose {
-            self.give_up_empty_points(&mut memory, &mut work);
-        }
+        self.evaluations_of(memory, division)
+    }
+
+    /// The same with the finest mesh at work.
+    pub fn finest_evaluations(&self, division: &Division) -> usize {
+        let mut memory = vec![0.0; self.memory_len()];
+        memory[..self.overload()].fill(1.0);
+        self.evaluations_of(memory, division)
+    }
+
+    fn evaluations_of(&self, mut memory: Vec<f64>, division: &Division) -> usize {
+        let mut work = Work::new(self);
+        self.give_up_empty_points(&mut memory, &mut work);
         work.refresh(self, &memory);
         work.divide(self, division);
         work.evaluations(division)

@@ -262,19 +262,21 @@ impl Levels for LevelsForce {
 
     fn variation(&self, positions: &[Vec3], memory: &[f64], scratch: &Scratch) -> Vec<(u32, f64)> {
         let Choice::Adaptive(criterion) = &self.choice else { return Vec::new() };
+        let of_active = |work: &Work| {
+            let own = self.own(positions);
+            let of = |point: &u32| {
+                let variation = self.counted_variation(criterion, *point as usize, own, memory);
+                (self.first_row as u32 + point, variation)
+            };
+            work.active.iter().map(of).collect()
+        };
         let known = read(scratch);
-        let mut anew = Work::new(self);
-        let work = if known.is_of(self, memory) {
-            known
-        } else {
-            anew.refresh(self, memory);
-            &anew
-        };
-        let own = self.own(positions);
-        let of = |point: &u32| {
-            (self.first_row as u32 + point, self.counted_variation(criterion, *point as usize, own, memory))
-        };
-        work.active.iter().map(of).collect()
+        if known.is_of(self, memory) {
+            return of_active(known);
+        }
+        let mut work = Work::new(self);
+        work.refresh(self, memory);
+        of_active(&work)
     }
 
     fn census(&self, memory: &[f64], scratch: &Scratch) -> Census {

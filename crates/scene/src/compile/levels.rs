@@ -235,47 +235,78 @@ fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpe
     }
 }
 
-/// Says where a budget is below what the coarsest mesh needs: that is at work all the same, and nothing is ever refined.
+/// Says where a budget is below what the coarsest mesh needs, cuts, or the finest until the body has settled: these are at work all the same.
 pub fn warn_of_budgets(draft: &mut Draft) {
     let doubt = |body: &Placed| {
         let spec = body.spec.levels.as_ref()?;
-        let (budget, system) = (spec.budget?, draft.spec.systems.get(body.system)?);
-        let stepper = system.stepper.as_ref()?;
-        let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return None };
-        let forces = &draft.systems.get(body.system)?.forces;
-        let name = solid_name(&body.spec.name);
-        let force = forces.iter().find(|force| force.name() == name)?;
-        let force = force.as_any().downcast_ref::<LevelsForce>()?;
-        let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
-        let mut division = Division::new(timestep, halvings as u32);
-        if stepper.values.text("schedule") == "together" {
-            division.pace = Pace::Together;
-        }
-        if stepper.values.number("velocity_jump") > 0.0 {
-            division.velocity_jump = stepper.values.number("velocity_jump");
-        }
+        let (budget, name) = (spec.budget?, &body.spec.name);
+        let (force, division) = levels_of(draft, body)?;
         let least = force.least_evaluations(&division, 0);
-        if budget < least as f64 {
-            return Some(format!(
-                "{}: a step of body `{}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
-                 stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
-                 `ratio`) or fewer `halvings` would need less",
-                draft.place(&spec.site),
-                body.spec.name
-            ));
-        }
         let beside_cuts = force.least_evaluations(&division, force.cut_count());
-        (budget < beside_cuts as f64).then(|| {
+        let settles = spec.criterion.settled.filter(|date| *date > 0.0);
+        let finest = settles.map_or(0, |_| force.finest_evaluations(&division));
+        let place = draft.place(&spec.site);
+        Some(if budget < least as f64 {
             format!(
-                "{}: a step of body `{}` evaluates {beside_cuts} stresses once all of its cuts are made, whatever its budget of {budget} says: where a cut runs \
-                 the finest mesh is at work; against the clock the world may come late; a larger budget, a smaller cut or fewer `halvings` would fit",
-                draft.place(&spec.site),
-                body.spec.name
+                "{place}: a step of body `{name}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
+                 stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
+                 `ratio`) or fewer `halvings` would need less"
             )
+        } else if budget < beside_cuts as f64 {
+            format!(
+                "{place}: a step of body `{name}` evaluates {beside_cuts} stresses once all of its cuts are made, whatever its budget of {budget} says: \
+                 where a cut runs the finest mesh is at work; against the clock the world may come late; a larger budget, a smaller cut \
+                 or fewer `halvings` would fit"
+            )
+        } else if budget < finest as f64 {
+            format!(
+                "{place}: a step of body `{name}` evaluates {finest} stresses until it has settled at {} s, whatever its budget of {budget} says: \
+                 the finest mesh is at work until then; against the clock the world may come late; a larger budget, an earlier date, \
+                 a coarser finest mesh or fewer `halvings` would fit",
+                settles.unwrap_or(0.0)
+            )
+        } else {
+            return None;
         })
     };
     let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
     draft.warnings.extend(doubts);
+}
+
+/// Says where a run ends before a body has settled.
+pub fn warn_of_settling(draft: &mut Draft) {
+    let duration = draft.spec.run.duration;
+    let doubt = |body: &Placed| {
+        let spec = body.spec.levels.as_ref()?;
+        let settled = spec.criterion.settled.filter(|settled| *settled >= duration)?;
+        Some(format!(
+            "{}: body `{}` has settled at {settled} s, and the run ends at {duration} s: the finest mesh is at work all the while; an earlier \
+             date would let it be coarse",
+            draft.place(&spec.site),
+            body.spec.name
+        ))
+    };
+    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
+    draft.warnings.extend(doubts);
+}
+
+/// The force of a body with levels, and how its steps are divided.
+fn levels_of<'a>(draft: &'a Draft, body: &Placed) -> Option<(&'a LevelsForce, Division)> {
+    let system = draft.spec.systems.get(body.system)?;
+    let stepper = system.stepper.as_ref()?;
+    let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return None };
+    let name = solid_name(&body.spec.name);
+    let force = draft.systems.get(body.system)?.forces.iter().find(|force| force.name() == name)?;
+    let force = force.as_any().downcast_ref::<LevelsForce>()?;
+    let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+    let mut division = Division::new(timestep, halvings as u32);
+    if stepper.values.text("schedule") == "together" {
+        division.pace = Pace::Together;
+    }
+    if stepper.values.number("velocity_jump") > 0.0 {
+        division.velocity_jump = stepper.values.number("velocity_jump");
+    }
+    Some((force, division))
 }
 
 /// Says where cuts go through all cells of a body: from then on it is loose points, which nothing touches.

@@ -163,6 +163,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     doubts::warn(&mut draft);
     reduced::warn(&mut draft);
     levels::warn_of_budgets(&mut draft);
+    levels::warn_of_settling(&mut draft);
     levels::warn_of_cuts(&mut draft);
     imposing::warn(&mut draft);
     doubts::warn_of_detection(&mut draft);

@@ -43,6 +43,8 @@ const LIVER: Poke = Poke {
         "shapes.tool.motion.times=[0, 0.4, 0.7, 6, 6.3]",
         "run.duration=\"7 s\"",
         "bodies.liver.levels.stiffness=\"as_finest\"",
+        // which levels that are fixed do not have
+        "probes.variation.quantity=\"levels.active\"",
     ],
     all_fine: r#"bodies.liver.levels={ count = 3, ratio = 1.8, fixed = "2", dress = { blend = "200 ms" } }"#,
     periods: [250, 80],
@@ -226,4 +228,22 @@ pub fn dress_share(effort: Effort) -> Result<Vec<Figure>, String> {
         spread: 0.0,
         bytes: world.bytes(),
     }])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BLOCK, LIVER, scene};
+
+    /// Scenes change, and what is set here must go on fitting them.
+    #[test]
+    fn scenes_take_what_is_set() {
+        for poke in [BLOCK, LIVER] {
+            for more in [&[][..], &[poke.all_fine]] {
+                let settings: Vec<String> =
+                    poke.settings.iter().chain(more).map(|setting| (*setting).to_owned()).collect();
+                let taken = scene(poke.scene, &settings).map(|scene| scene.probes.len());
+                assert!(taken.is_ok_and(|probes| probes > 0), "{} with {settings:?}", poke.scene);
+            }
+        }
+    }
 }
