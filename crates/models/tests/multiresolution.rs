@@ -449,29 +449,34 @@ fn semi_implicit_points_bear_twice_the_step() {
     }
 }
 
+/// A ball of levels whose steps may evaluate so many stresses.
+fn budgeted(meshes: &[Mesh], criterion: Criterion, budget: Option<f64>) -> LevelsForce {
+    let all: Vec<&Mesh> = meshes.iter().collect();
+    LevelsForce::new(LevelsDescription {
+        name: "ball.material".to_owned(),
+        meshes: &all,
+        first_row: 0,
+        materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
+        material_of_cell: &vec![0; meshes[2].cell_count()],
+        coupling: Coupling::Transpose,
+        loops: Loops::Activated,
+        stiffness: Stiffness::Own,
+        choice: Choice::Adaptive(criterion),
+        viscosity: 0.0,
+        mass_damping: 0.0,
+        budget,
+        cuts: Vec::new(),
+    })
+    .unwrap()
+}
+
 /// DEB-39: a budget is kept while the whole body asks for more, and nothing is refined above 95 % of it.
 #[test]
 fn budgets_are_kept() {
     let meshes = balls();
-    let all: Vec<&Mesh> = meshes.iter().collect();
     let spent = |budget: Option<f64>| {
         let criterion = Criterion { measure: Measure::Jump, refine: 0.01, coarsen: 0.002, settled: None };
-        let force = LevelsForce::new(LevelsDescription {
-            name: "ball.material".to_owned(),
-            meshes: &all,
-            first_row: 0,
-            materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
-            material_of_cell: &vec![0; meshes[2].cell_count()],
-            coupling: Coupling::Transpose,
-            loops: Loops::Activated,
-            stiffness: Stiffness::Own,
-            choice: Choice::Adaptive(criterion),
-            viscosity: 0.0,
-            mass_damping: 0.0,
-            budget,
-            cuts: Vec::new(),
-        });
-        let mut body = Alone::new(force.unwrap());
+        let mut body = Alone::new(budgeted(&meshes, criterion, budget));
         for _ in 0..12 {
             body.place(|x| Vec3::new(x.x + 4.0 * x.y * x.z, x.y + 6.0 * x.x * x.x, x.z));
             body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
@@ -482,6 +487,32 @@ fn budgets_are_kept() {
     for part in [0.3, 0.6] {
         let spent = spent(Some(part * most));
         assert!(spent <= part * most && spent > 0.3 * part * most, "{spent} of {}", part * most);
+    }
+}
+
+/// What a look came to is kept for the next one on the same grounds, and changes nothing: a run that goes on from a snapshot knows nothing of it. While points
+/// come, where a budget lets few come, where they stay and go.
+#[test]
+fn looks_follow_from_memory_alone() {
+    let meshes = balls();
+    let criterion = Criterion { measure: Measure::Jump, refine: 0.05, coarsen: 0.0125, settled: None };
+    for budget in [None, Some(3000.0)] {
+        let looks = |forgets: bool| {
+            let mut body = Alone::new(budgeted(&meshes, criterion, budget));
+            let look = |strength: f64| {
+                body.place(|x| {
+                    let (s, c) = (strength * x.z).sin_cos();
+                    Vec3::new(c * x.x - s * x.y, s * x.x + c * x.y, x.z)
+                });
+                if forgets {
+                    body.scratch = body.force.new_scratch();
+                }
+                body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+                body.memory.clone()
+            };
+            [0.0, 20.0, 20.0, 60.0, 60.0, 60.0, 60.0, 30.0, 30.0, 0.0, 0.0, 0.0, 0.0].map(look)
+        };
+        assert!(looks(true) == looks(false), "{budget:?}");
     }
 }
 
