@@ -34,6 +34,7 @@ use souple_models::network::{
 };
 
 use super::bodies::Placed;
+use souple_table::{MODERATE, Value, readable};
 use super::shape::Shape;
 use super::{Draft, memory, start};
 use crate::diagnostic::Code;
@@ -65,9 +66,11 @@ pub struct PlacedLinks {
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
     let places = network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.place(i)));
     let points: Vec<Vec3> = places.map(|place| body.placement.place(place)).collect();
-    if let Some(point) = points.iter().position(|point| !point.is_finite()) {
-        let message = format!("mass {point} starts at no finite place");
-        draft.log.add(Code::NotFinite, &body.site, message, "finite numbers");
+    let is_far = |point: &Vec3| !point.to_array().iter().all(|number| number.abs() <= MODERATE);
+    if let Some(point) = points.iter().position(is_far) {
+        let place = points[point].to_array().map(readable).join(", ");
+        let message = format!("mass {point} starts at ({place}) m, where nothing can be computed");
+        draft.log.add(Code::NotFinite, &body.site, message, format!("numbers up to {}", readable(MODERATE)));
         return None;
     }
     if points.is_empty() {
@@ -247,6 +250,16 @@ fn law(
     let chosen = chosen?;
     match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
         Ok(law) => Some(law),
+    for parameter in chosen.entry.parameters {
+        if let Some(Value::Number(number)) = chosen.values.get(parameter.name)
+            && number.abs() > MODERATE
+        {
+            let message = format!("`{}` is {}: its square is no number", parameter.name, readable(number));
+            let expected = format!("{}, {} at most", parameter.expected(), readable(MODERATE));
+            draft.log.add(Code::OutOfRange, chosen.site_of(parameter.name), message, expected);
+            return None;
+        }
+    }
         Err(error) => {
             let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
             let (keys, part) = error.place();

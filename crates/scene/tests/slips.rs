@@ -1,0 +1,56 @@
+//! Slips of a scene of a network: what is misspelt, empty or of no size that can be computed with is refused with its place, and contradictions are told.
+
+use crate::worlds::read;
+
+/// A mass on a spring.
+const SCENE: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+[networks.net.masses.post]
+positions = [[0, 0, 0]]
+mass = 1
+fixed = true
+[networks.net.masses.free]
+positions = [[1, 0, 0], [2, 0, 1]]
+mass = 1
+[[networks.net.links]]
+law = { name = "spring", stiffness = 3 }
+chain = true
+of = ["free"]
+[[networks.net.constraints]]
+rod = { chain = true }
+of = ["free"]
+[run]
+duration = 1
+"#;
+
+fn refusal(setting: &str) -> String {
+    match read(SCENE, &[setting]) {
+        Ok(_) => panic!("{setting} is taken"),
+        Err(message) => message,
+    }
+}
+
+/// Numbers whose squares are none, and times and groups of nothing.
+#[test]
+fn numbers_of_no_size_are_refused() {
+    for (setting, words) in [
+        ("networks.net.masses.free.mass=1e300", "1e300 is out of range"),
+        ("networks.net.masses.free.mass=1e300", "a number above 0, 1e100 at most [kg]"),
+        ("networks.net.links[0].law.stiffness=1e308", "`stiffness` is 1e308: its square is no number"),
+        ("networks.net.masses.free.positions=[[1e200, 0, 0], [2, 0, 0]]", "mass 1 starts at (1e200, 0, 0) m"),
+        ("run.duration=0", "0 is out of range"),
+        ("networks.net.masses.free.positions=[]", "`free` is a group of no masses"),
+        ("networks.net.constraints[0].rod={}", "links join masses in one way, these say none"),
+        (
+            "networks.net.masses.free.line={ from = [0, 0, 0], to = [1, 0, 0], count = 2 }",
+            "these say positions and line",
+        ),
+    ] {
+        let message = refusal(setting);
+        assert!(message.contains(words), "{setting}: {message}");
+    }
+}
