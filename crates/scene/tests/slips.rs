@@ -34,6 +34,53 @@ fn refusal(setting: &str) -> String {
     }
 }
 
+/// A parameter that a law does not name would change nothing.
+#[test]
+fn parameters_that_laws_do_not_name_are_refused() {
+    let law = |law: &str| format!("networks.net.links[0].law={{ {law} }}");
+    for (law, place, words) in [
+        (
+            law("name = \"formula\", push = \"-k*(D - L0)\", parameters = { k = 3, kk = 2 }"),
+            "law.parameters.kk",
+            "`parameters.kk` changes nothing: `push` names `k` alone",
+        ),
+        (
+            law("name = \"formula\", energy = \"2*(D - L0)^2\", parameters = { k = 3 }"),
+            "law.parameters.k",
+            "`parameters.k` changes nothing: `energy` names no parameter",
+        ),
+        (
+            law(
+                "name = \"rheological\", network = \"spring(k) | damper(2*z)\", parameters = { k = \"5 N/m\", z = 1, Q = 2 }",
+            ),
+            "law.parameters.Q",
+            "`parameters.Q` changes nothing: `network` names `k`, `z` alone",
+        ),
+        (
+            law(
+                "name = \"finite_state\", states = { on = \"-k*(D - L0)\", off = \"0\" }, transitions = { \"on -> off\" = \"D > far\" }, parameters = { k = 1, far = 2, near = 1 }",
+            ),
+            "law.parameters.near",
+            "`parameters.near` changes nothing: its formulas name `k`, `far` alone",
+        ),
+        (
+            law(
+                "name = \"conditional\", states = { held = 'CHK, k; SUP, L, far -> torn', torn = 'LN; VN' }, parameters = { k = 5, far = 1, fare = 2 }",
+            ),
+            "law.parameters.fare",
+            "`parameters.fare` changes nothing: its states name `k`, `far` alone",
+        ),
+        (
+            law("name = \"formula\", push = \"-k*(D - L0)\", parameters = { k = nan }"),
+            "law.parameters.k",
+            "NaN is no finite number",
+        ),
+    ] {
+        let message = refusal(&law);
+        assert!(message.contains(place) && message.contains(words), "{law}: {message}");
+    }
+}
+
 /// Numbers whose squares are none, and times and groups of nothing.
 #[test]
 fn numbers_of_no_size_are_refused() {
