@@ -1,6 +1,6 @@
 //! Slips of a scene of a network: what is misspelt, empty or of no size that can be computed with is refused with its place, and contradictions are told.
 
-use crate::worlds::read;
+use crate::worlds::{read, started};
 
 /// A mass on a spring.
 const SCENE: &str = r#"
@@ -100,4 +100,49 @@ fn numbers_of_no_size_are_refused() {
         let message = refusal(setting);
         assert!(message.contains(words), "{setting}: {message}");
     }
+}
+
+/// Masses that start towards each other are no rigid body, and are told; those that turn together are one.
+#[test]
+fn bodies_that_start_apart_are_told() {
+    const DICE: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+[modules.die.masses.corners]
+lattice = { origin = [-0.1, -0.1, -0.1], spacing = 0.2, counts = [2, 2, 2] }
+mass = 0.1
+[networks.space.modules.one]
+module = "die"
+rotate = { axis = [1, 0.3, 0.2], angle = "40 deg" }
+velocity = [1, 0.1, 0]
+[networks.space.modules.two]
+module = "die"
+translate = [0.5, 0.1, 0]
+[[networks.space.constraints]]
+rigid = true
+[run]
+duration = 1
+"#;
+    let warnings = |settings: &[&str]| -> Vec<String> {
+        let scene = read(DICE, settings).unwrap_or_else(|message| panic!("{message}"));
+        scene.warnings.into_iter().filter(|warning| warning.contains("rigid")).collect()
+    };
+    let told = warnings(&[]);
+    assert!(
+        told.len() == 1 && told[0].contains("one body of all masses of the network, and masses"),
+        "{told:?}"
+    );
+    assert!(told[0].contains("`of`, with the groups that are bodies of their own"), "{told:?}");
+    let alike = ["networks.space.modules.two.velocity=[1, 0.1, 0]"];
+    assert_eq!(warnings(&alike), Vec::<String>::new());
+    assert_eq!(warnings(&["networks.space.constraints[0].of=[\"one\", \"two\"]"]), Vec::<String>::new());
+    // what the rods take away is gone after a step
+    let mut world = started(DICE, &[]);
+    world.step().unwrap();
+    let velocities = &world.rows(0).velocities;
+    let mean = velocities.iter().copied().sum::<souple_math::Vec3>() / 16.0;
+    assert!((mean.x - 0.5).abs() < 1e-12, "{mean:?}");
 }

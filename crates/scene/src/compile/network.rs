@@ -3,6 +3,7 @@
 mod coincident;
 mod columns;
 mod constraints;
+mod contradicting;
 mod controls;
 mod ends;
 mod faces;
@@ -14,6 +15,7 @@ mod summary;
 mod table;
 mod views;
 
+pub use contradicting::warn_of_starts;
 pub use controls::add as add_controls;
 pub use ends::size;
 pub use fill::fill_all;
@@ -32,9 +34,9 @@ use souple_models::network::{
     Account, AsksFor, BuildLink, Crowd, CrowdDescription, Friction, Fusible, LinkDescription, LinkKernel,
     Links, Listing, Making, PAIR_MEMORY, Slide, Span,
 };
+use souple_table::{MODERATE, Value, readable};
 
 use super::bodies::Placed;
-use souple_table::{MODERATE, Value, readable};
 use super::shape::Shape;
 use super::{Draft, memory, start};
 use crate::diagnostic::Code;
@@ -248,8 +250,6 @@ fn law(
     draft: &Draft,
 ) -> Option<Box<dyn LinkKernel>> {
     let chosen = chosen?;
-    match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
-        Ok(law) => Some(law),
     for parameter in chosen.entry.parameters {
         if let Some(Value::Number(number)) = chosen.values.get(parameter.name)
             && number.abs() > MODERATE
@@ -260,6 +260,8 @@ fn law(
             return None;
         }
     }
+    match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
+        Ok(law) => Some(law),
         Err(error) => {
             let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
             let (keys, part) = error.place();
