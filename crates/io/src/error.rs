@@ -39,6 +39,13 @@ pub struct Fault {
     pub expected: String,
 }
 
+impl Fault {
+    /// Where what is what, without what would be accepted.
+    pub fn what(&self) -> String {
+        format!("{}: {} is {}", self.place, self.subject, self.found)
+    }
+}
+
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {

@@ -179,11 +179,17 @@ impl Course {
         let period = session.world.model().period;
         let measured = (session.first_step as f64 * period, session.world.time());
         let span = Span { scene_end: aims.scene_end, period, status, measured };
-        // nothing is heard where nothing is written
-        let sounds = aims.sounds.iter().filter(|_| folder.is_some());
+        // nothing is heard where nothing is written, nor of a run that failed: it would be scaled by what it failed of
+        let is_heard = folder.is_some() && status != Status::Failed;
+        let sounds = aims.sounds.iter().filter(|_| is_heard);
         let places = session.bodies.iter().flat_map(|body| &body.mesh.points);
         let size = places.fold(0.0, |size: f64, place| size.max(place.length()));
         let rounding = Rounding { size, period };
+        if folder.is_some() {
+            let cut =
+                aims.sounds.iter().filter_map(|sound| cut_short(&sound.name, status, session.world.time()));
+            session.warnings.extend(cut);
+        }
         let (sounds, said): (Vec<_>, Vec<_>) =
             sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
@@ -235,6 +241,17 @@ impl Course {
         // where even this cannot be written, the failure at hand tells of it
         let _ = report::write_report(folder, &report);
         report
+    }
+}
+
+/// What is to be said of the sound of a run that did not come to its end.
+fn cut_short(sound: &str, status: Status, time: f64) -> Option<String> {
+    match status {
+        Status::Done => None,
+        Status::Failed => Some(format!("sound `{sound}` is not written: the run failed at {time:.6} s")),
+        Status::Interrupted => {
+            Some(format!("sound `{sound}` ends at {time:.6} s, where the run was interrupted"))
+        }
     }
 }
 

@@ -141,7 +141,7 @@ pub enum RunError {
         stability: Stability,
     },
     #[error(
-        "a duration of {} s is {share:.3e} of a period of {} s: no step would be made; a run lasts at least half a period",
+        "a duration of {} s is {share:.3e} of the `period` of the `world`, {} s: no step would be made; expected a `duration` of at least half a period",
         readable(*.duration), readable(*.period)
     )]
     NoStep { duration: f64, period: f64, share: f64 },

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use souple_run::{Control, Options, Outcome};
+use souple_run::{Control, Options, Outcome, Status};
 
 /// A mass of 1 kg between two springs swings a hundred times in a second, by 1.6 mm.
 const SCENE: &str = r#"
@@ -76,6 +76,37 @@ fn samples_are_what_probes_read() {
     assert_eq!((half.len(), &half[24..28]), (58 + 4 * 401, &4000_u32.to_le_bytes()[..]));
     assert!(outcome.report.warnings.iter().all(|warning| !warning.contains("sound")));
     std::fs::remove_dir_all(folder).unwrap();
+}
+
+/// A run that fails writes no sound, which would be scaled by what it failed of; one that is interrupted writes what there is, and says so.
+#[test]
+fn sounds_of_runs_that_do_not_end_are_told() {
+    let sounds = "[sounds.heard]\nprobes = [\"up\"]\n";
+    for (status, setting, words) in [
+        (
+            Status::Failed,
+            Some("world.gravity=[0, \"1/max(0, 0.01 - t)\", 0]"),
+            "sound `heard` is not written: the run failed at 0.0",
+        ),
+        (Status::Interrupted, None, "sound `heard` ends at 0.0"),
+    ] {
+        let settings: Vec<String> = setting.into_iter().map(str::to_owned).collect();
+        let text = format!("{SCENE}{sounds}");
+        let scene = souple_scene::read_text("net.toml", &text, Path::new("."), &settings).unwrap();
+        let folder =
+            std::env::temp_dir().join(format!("souple_sounds_{}_{}", status.as_str(), std::process::id()));
+        let options = Options { out: Some(folder.clone()), ..Options::default() };
+        let mut watch = |progress: &souple_run::Progress| {
+            if setting.is_none() && progress.step == 20 { Control::Stop } else { Control::Continue }
+        };
+        let outcome = souple_run::run(scene, &options, &mut watch).unwrap();
+        assert_eq!(outcome.report.status, status, "{:?}", outcome.report.failure);
+        let warnings = &outcome.report.warnings;
+        assert!(warnings.iter().any(|warning| warning.starts_with(words)), "{warnings:?}");
+        assert_eq!(folder.join("heard.wav").exists(), status == Status::Interrupted);
+        assert_eq!(outcome.report.sounds.len(), usize::from(status == Status::Interrupted));
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 }
 
 /// What is beyond full scale is told, with a gain that would hold it; so is silence.

@@ -2,8 +2,8 @@
 //!
 //! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
 //! (`5ms`, `linear`); nothing behind the `=` takes what is there out. Keys that may be written can be set even where the scene leaves them out, and a whole item behind the
-//! last one of a list; bodies, systems and the like must be there, except the system `main` that a scene has where it writes
-//! none. Files are relative to the current folder, as everything on the command line is.
+//! last one of a list, or a whole table of a new name among bodies, probes and the like; parts are set of those that are there, and of the system
+//! `main` that a scene has where it writes none. Files are relative to the current folder, as everything on the command line is.
 
 use std::path::PathBuf;
 
@@ -115,6 +115,11 @@ fn split(path: &str) -> Option<Vec<Step<'_>>> {
     Some(steps)
 }
 
+/// Whether what is left of a path and what it is set to are a table of a new name as a whole.
+fn is_new(steps: &[Step], value: &Node) -> bool {
+    matches!(steps, [Step::Key(_)]) && matches!(value.content, Content::Table(_))
+}
+
 struct Setting<'a> {
     path: &'a str,
     place: Place,
@@ -183,7 +188,11 @@ impl Setting<'_> {
                 Some(keys) => shape.is_some() || !matches!(keys.others, crate::keys::Others::Refused),
                 None => true,
             };
-            let names_a_table = matches!(shape, Some(Shape::Tables(_) | Shape::Named(_))) && !rest.is_empty();
+            let names_a_table = match shape {
+                Some(Shape::Tables(_)) => !rest.is_empty(),
+                Some(Shape::Named(_)) => !rest.is_empty() && !is_new(rest, &value),
+                _ => false,
+            };
             if !may_be_written || names_a_table {
                 let mut names: Vec<&str> = known().collect();
                 names.sort_unstable();
@@ -235,11 +244,18 @@ impl Setting<'_> {
                 Some(Shape::Table(keys)) => self.set(table, Some(keys), steps, value),
                 Some(Shape::Named(keys)) => match table.get_mut(name) {
                     Some(item) => self.set_within(item, Some(Shape::Table(keys)), rest, value),
+                    None if is_new(steps, &value) => {
+                        let key = (*name).to_owned();
+                        table.entries.push(Entry { key, key_place: self.place, node: value });
+                    }
                     None => {
                         let names: Vec<&str> = table.keys().collect();
                         let hint = did_you_mean(name, names.iter().copied());
                         let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
-                        self.refuse(message, one_of(&names));
+                        let whole = format!("`{name}={{ … }}`, a new one as a whole");
+                        let expected =
+                            if names.is_empty() { whole } else { format!("{}, or {whole}", one_of(&names)) };
+                        self.refuse(message, expected);
                     }
                 },
                 Some(Shape::Values) if table.get(name).is_none() => {
@@ -306,6 +322,24 @@ mod tests {
             table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
         let material = body.and_then(|body| body.get("material")).and_then(Node::as_table).expect("a table");
         assert_eq!(material.keys().collect::<Vec<_>>(), ["name", "density"]);
+    }
+
+    /// A table of a new name is added as a whole, also where there is none of its kind; a part of one is not.
+    #[test]
+    fn new_tables_are_added() {
+        let text = "[world]\nperiod = 1\n[bodies.a]\ndrag = 1\n";
+        let overrides =
+            ["bodies.b={ drag = 2 }", "bodies.b.drag=3", "probes.new={body=\"a\",quantity=\"position\"}"];
+        let (table, faults) = set(text, &overrides);
+        assert_eq!(faults, 0);
+        let of = |kind: &str| table.get(kind).and_then(Node::as_table).expect("a table").clone();
+        assert_eq!(of("bodies").keys().collect::<Vec<_>>(), ["a", "b"]);
+        let added = of("bodies").get("b").and_then(Node::as_table).expect("a body").clone();
+        assert_eq!(added.get("drag").map(|node| &node.content), Some(&Content::Integer(3)));
+        assert_eq!(of("probes").keys().collect::<Vec<_>>(), ["new"]);
+        for bad in ["bodies.b=2", "probes.new=position", "probes.new.body=a", "worlds.b={}", "world.b={}"] {
+            assert_eq!(set(text, &[bad]).1, 1, "{bad}");
+        }
     }
 
     /// Keys and items are taken out; what is not there is not.

@@ -1,6 +1,7 @@
 //! Files of planned commands, as `souple sweep` writes them and scenes and studies read them: a row for each period.
 
 use souple_io::NumberTable;
+use souple_table::readable;
 
 use crate::diagnostic::Code;
 
@@ -30,17 +31,13 @@ impl PlanFile {
     /// # Errors
     /// A row that is no numbers, or not of the next period [s].
     pub fn read(text: &str, period: f64) -> Result<Self, PlanFault> {
-        let table = NumberTable::read(text, &[]).map_err(|fault| {
-            PlanFault::new(
-                Code::WrongType,
-                format!("{}: {} is {}", fault.place, fault.subject, fault.found),
-                fault.expected,
-            )
-        })?;
+        let table = NumberTable::read(text, &[])
+            .map_err(|fault| PlanFault::new(Code::WrongType, fault.what(), fault.expected))?;
         for (count, (line, numbers)) in table.rows.iter().enumerate() {
             if (numbers[0] / period - count as f64).abs() > OFF * (1.0 + count as f64) {
-                let found = format!("line {line} is of {} s", numbers[0]);
-                let expected = format!("{} s: a row for each period of {period} s", count as f64 * period);
+                let found = format!("line {line} is of {} s", readable(numbers[0]));
+                let [date, period] = [count as f64 * period, period].map(readable);
+                let expected = format!("{date} s: a row for each period of {period} s");
                 return Err(PlanFault::new(Code::Conflict, found, expected));
             }
         }

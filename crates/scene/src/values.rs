@@ -222,7 +222,7 @@ impl<'a> Reading<'a> {
                 }
                 Content::Text(text) => text.clone(),
                 Content::Integer(number) => number.to_string(),
-                Content::Number(number) => readable(*number),
+                Content::Number(_) => readable(item.number("", Range::ANY, "a finite number")?),
                 Content::List(_) => {
                     let wanted = "three numbers, as a direction";
                     let [x, y, z] = item.vector("", Range::ANY, wanted)?.to_array().map(readable);

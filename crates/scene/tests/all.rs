@@ -25,6 +25,7 @@ mod quantities;
 mod rigid_contacts;
 mod scenes;
 mod skins;
+mod slips;
 mod split;
 mod surfaces;
 mod textures;

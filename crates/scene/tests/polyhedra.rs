@@ -163,17 +163,17 @@ fn wrong_types_are_told_once() {
     }
 }
 
+/// A scene of what is in a room, where things fall.
+fn room(holds: &str) -> String {
+    let stepper = "[systems.main]\nstepper = \"t_simulation\"\nsteps_per_period = 5\n";
+    format!("format = 1\n[world]\nperiod = \"10 ms\"\ngravity = [0, 0, -10]\n{stepper}{holds}")
+}
+
 /// A hollow of triangles that do not close is met from its outer side alone.
 #[test]
 fn a_sheet_is_met_from_outside() {
-    const FALLING: &str = r#"
-format = 1
-[world]
-period = "10 ms"
-gravity = [0, 0, -10]
-[systems.main]
-stepper = "t_simulation"
-steps_per_period = 5
+    let falling = room(
+        r#"
 [networks.room.masses.plate]
 positions = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
 mass = 1
@@ -184,9 +184,10 @@ mass = 1
 [[networks.room.constraints]]
 faces = [{ of = ["plate"], triangles = [[0, 1, 2], [0, 2, 3]] }, { of = ["ball"], radius = 0.1 }]
 restitution = 0.5
-"#;
+"#,
+    );
     let height = |settings: &[&str], periods: u32| {
-        let mut world = started(FALLING, settings);
+        let mut world = started(&falling, settings);
         for _ in 0..periods {
             world.step().unwrap();
         }
@@ -205,14 +206,8 @@ restitution = 0.5
 /// A closed surface that is inside out is a vessel: what is thrown within it stays there.
 #[test]
 fn what_is_inside_out_holds_what_is_within() {
-    const THROWN: &str = r#"
-format = 1
-[world]
-period = "10 ms"
-gravity = [0, 0, -10]
-[systems.main]
-stepper = "t_simulation"
-steps_per_period = 5
+    let thrown = room(
+        r#"
 [networks.room.masses.box]
 positions = [[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0], [-1, -1, 1], [1, -1, 1], [-1, 1, 1], [1, 1, 1]]
 mass = 1
@@ -234,8 +229,9 @@ faces = [{ of = ["box"], triangles = [
 ] }, { of = ["die"], hull = true }, { of = ["ball"], radius = 0.1 }]
 friction = 0.3
 restitution = 0.8
-"#;
-    let mut world = started(THROWN, &[]);
+"#,
+    );
+    let mut world = started(&thrown, &[]);
     let mut turned = false;
     for step in 0..200 {
         world.step().unwrap();

@@ -37,7 +37,7 @@ pub struct Fit {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// The key that names it.
-    key: &'static str,
+    key: String,
     pub name: String,
     /// From 0; `None` of what is no vector.
     pub component: Option<usize>,
@@ -164,7 +164,8 @@ impl std::fmt::Display for Wanted {
 
 impl Wanted {
     /// `PROBE`, `PROBE.x`: the probe and its component.
-    pub(crate) fn read(key: &'static str, text: &str) -> Self {
+    pub(crate) fn read(key: impl Into<String>, text: &str) -> Self {
+        let key = key.into();
         for (component, suffix) in [".x", ".y", ".z"].into_iter().enumerate() {
             if let Some(name) = text.strip_suffix(suffix) {
                 return Self { key, name: name.to_owned(), component: Some(component) };
@@ -177,7 +178,7 @@ impl Wanted {
     pub(crate) fn among(&self, probes: &[ProbeInfo]) -> Result<(ProbeInfo, usize), SweepError> {
         let Some(probe) = probes.iter().find(|probe| probe.name == self.name) else {
             let known: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
-            return Err(SweepError::value(self.key, &self.name, format!("a probe: {}", known.join(", "))));
+            return Err(SweepError::value(&self.key, &self.name, format!("a probe: {}", known.join(", "))));
         };
         let number = self.number(if probe.gives_vector() { 3 } else { 1 })?;
         Ok((probe.clone(), number))
@@ -187,7 +188,7 @@ impl Wanted {
     fn of(&self, traces: &[Trace]) -> Result<(Vec<f64>, Vec<f64>), SweepError> {
         let Some(trace) = traces.iter().find(|trace| trace.name == self.name) else {
             let known: Vec<&str> = traces.iter().map(|trace| trace.name.as_str()).collect();
-            return Err(SweepError::value(self.key, &self.name, format!("a probe: {}", known.join(", "))));
+            return Err(SweepError::value(&self.key, &self.name, format!("a probe: {}", known.join(", "))));
         };
         let component = self.number(trace.components)?;
         let values = trace.values.iter().skip(component).step_by(trace.components).copied().collect();
@@ -200,11 +201,11 @@ impl Wanted {
             (None, 1) => Ok(0),
             (Some(component), components) if components > 1 && component < components => Ok(component),
             (Some(_), _) => {
-                Err(SweepError::value(self.key, self.to_string(), format!("{}, a scalar", self.name)))
+                Err(SweepError::value(&self.key, self.to_string(), format!("{}, a scalar", self.name)))
             }
             (None, _) => {
                 let expected = format!("a component of it: {0}.x, {0}.y or {0}.z", self.name);
-                Err(SweepError::value(self.key, format!("{}, a vector", self.name), expected))
+                Err(SweepError::value(&self.key, format!("{}, a vector", self.name), expected))
             }
         }
     }
@@ -286,6 +287,14 @@ pub(crate) fn as_number(value: &Value) -> Option<f64> {
         _ => None,
     }
 }
+
+/// A number that is read and can be computed with: its square and its cube are numbers still.
+pub(crate) fn is_moderate(number: &f64) -> bool {
+    number.is_finite() && number.abs() <= MOST
+}
+
+/// Numbers of a study, at most.
+const MOST: f64 = souple_table::MODERATE;
 
 /// A number in SI units, or a text of one with its unit, which is of the dimension of `unit`.
 pub(crate) fn as_quantity(value: &Value, unit: &str) -> Option<f64> {
@@ -432,10 +441,10 @@ impl Search<'_> {
                 Some(over) if !x.is_finite() => (over, format!("{x} at {} = {y:e}", fit.probe.name)),
                 _ => (&fit.probe, format!("{y} at the abscissa {x:e}")),
             };
-            return failed(wanted.key, found, "a probe that has a finite number all along the run");
+            return failed(&wanted.key, found, "a probe that has a finite number all along the run");
         }
         if let (Some(over), Some(point)) = (&fit.over, first_back(&curve)) {
-            return failed(over.key, goes_back(point), ONE_WAY);
+            return failed(&over.key, goes_back(point), ONE_WAY);
         }
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut residuals = Vec::with_capacity(fit.curve.len());
@@ -460,6 +469,10 @@ impl Search<'_> {
     /// The scene cannot be run with the values of the start, or read with those to try; a probe is not there, has no numbers or no value where the
     /// curve has points; a value changes nothing.
     pub fn run(&self, watch: &mut dyn FnMut(usize, f64)) -> Result<Option<Found>, SweepError> {
+        self.look(watch).map_err(|error| self.study.written.placed(error))
+    }
+
+    fn look(&self, watch: &mut dyn FnMut(usize, f64)) -> Result<Option<Found>, SweepError> {
         let (fit, unknowns) = (self.fit, &self.fit.unknowns);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.count.max(1)).build()?;
         let without_effect = |index: usize| {

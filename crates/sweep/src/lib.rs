@@ -10,6 +10,7 @@ mod fit;
 pub mod graphs;
 mod least_squares;
 mod motion;
+mod place;
 mod state_space;
 mod study;
 mod sweep;
@@ -38,6 +39,9 @@ pub enum SweepError {
     Syntax { path: PathBuf, message: String },
     #[error("`{path}` is {value}; expected {expected}")]
     Value { path: String, value: String, expected: String },
+    /// The same, with where it is written, from 1.
+    #[error("{}:{line}:{column}: {error}", .path.display())]
+    At { path: PathBuf, line: usize, column: usize, error: Box<SweepError> },
     #[error("{}: {found}; expected {expected}", .path.display())]
     Plan { path: PathBuf, found: String, expected: String },
     #[error("none of {count} starts comes to a motion that meets its keys: {messages}")]
@@ -66,6 +70,48 @@ pub enum SweepError {
 
 impl SweepError {
     fn value(path: impl Into<String>, value: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self::Value { path: path.into(), value: value.into(), expected: expected.into() }
+        let [value, expected] = [value.into(), expected.into()].map(|words| without_long_numbers(&words));
+        Self::Value { path: path.into(), value, expected }
+    }
+}
+
+/// Digits in a row beyond which a number is told by its first ones: 64-bit numbers have 17 that matter.
+const DIGITS: usize = 20;
+
+/// Words in which numbers of very many digits are cut short.
+fn without_long_numbers(words: &str) -> String {
+    let mut short = String::with_capacity(words.len().min(1024));
+    let mut digits = 0;
+    for character in words.chars() {
+        let is_digit = character.is_ascii_digit();
+        if !is_digit && digits > DIGITS {
+            short.push('…');
+        }
+        digits = if is_digit { digits + 1 } else { 0 };
+        if digits <= DIGITS {
+            short.push(character);
+        }
+    }
+    if digits > DIGITS {
+        short.push('…');
+    }
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that are read to the end stay; one of 300 digits is not echoed in full.
+    #[test]
+    fn long_numbers_are_cut_short() {
+        assert_eq!(
+            without_long_numbers("from -1.5e300 to 12345678901234567890"),
+            "from -1.5e300 to 12345678901234567890"
+        );
+        let long = format!("{} and {}, 3", "1".repeat(300), "2".repeat(21));
+        let short = format!("{}… and {}…, 3", "1".repeat(20), "2".repeat(20));
+        assert_eq!(without_long_numbers(&long), short);
+        assert_eq!(without_long_numbers(&"7".repeat(300)), format!("{}…", "7".repeat(20)));
     }
 }

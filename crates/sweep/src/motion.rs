@@ -21,6 +21,7 @@ use std::path::PathBuf;
 use souple_engine::Interruption;
 use souple_io::Column;
 
+pub(crate) use self::course::whole;
 pub(crate) use self::slopes::{Coordinate, coordinates};
 use crate::SweepError;
 use crate::fit::Wanted;
@@ -83,6 +84,7 @@ pub struct KeyState {
     pub band: [f64; 2],
     /// What the square of a miss costs; `None`: there is none.
     pub weight: Option<f64>,
+    pub(crate) quantities: Vec<Quantity>,
 }
 
 /// When a key holds [s].
@@ -100,6 +102,30 @@ pub struct Cost {
     pub value: f64,
     /// What the square of its difference costs in a second.
     pub weight: f64,
+    pub(crate) quantities: Vec<Quantity>,
+}
+
+/// A number that is written with a unit, which has to be one of what the probe measures.
+#[derive(Clone, Debug)]
+pub(crate) struct Quantity {
+    /// Path of the key.
+    key: String,
+    text: String,
+}
+
+impl Quantity {
+    /// # Errors
+    /// It is of another dimension than `unit`.
+    pub fn check(&self, unit: &str) -> Result<(), SweepError> {
+        let expected = || match unit {
+            "" => "a finite number without a unit, as its probe has none".to_owned(),
+            unit => format!("a finite number in {unit}, or with a unit of its kind, as its probe has"),
+        };
+        match souple_formal::quantity_in(&self.text, unit) {
+            Ok(_) => Ok(()),
+            Err(_) => Err(SweepError::value(&self.key, format!("\"{}\"", self.text), expected())),
+        }
+    }
 }
 
 /// What was found.
@@ -227,7 +253,10 @@ impl Planner<'_> {
                 linear_quadratic::search(self, costs, *duration, watch)
             }
         };
-        if self.stop.is_wished() { Ok(None) } else { found.map(Some) }
+        if self.stop.is_wished() {
+            return Ok(None);
+        }
+        found.map(Some).map_err(|error| self.study.written.placed(error))
     }
 }
 

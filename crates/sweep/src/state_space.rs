@@ -288,7 +288,8 @@ impl Tabulator<'_> {
         let mut tabulation = self.tabulation.clone();
         // names that it does not read are told of in their turn
         tabulation.states.sort_by_key(|span| names.iter().position(|name| *name == span.name));
-        Tabulator { tabulation: &tabulation, ..*self }.run_in_order(watch)
+        let found = Tabulator { tabulation: &tabulation, ..*self }.run_in_order(watch);
+        found.map_err(|error| self.study.written.placed(error))
     }
 
     fn run_in_order(&self, watch: &(dyn Fn(usize, usize) + Sync)) -> Result<Option<FoundTable>, SweepError> {
@@ -296,6 +297,14 @@ impl Tabulator<'_> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.count.max(1)).build()?;
         let mut shooter = Shooter::start(self.study, self.tabulation, &grid)?;
         let is_target = shooter.targets()?;
+        if !is_target.contains(&false) {
+            let expected = "one that does not hold in some state of the grid, to lead from there";
+            return Err(SweepError::value(
+                "plan.target",
+                "a condition that every state of the grid meets",
+                expected,
+            ));
+        }
         let Some((shots, failed)) = self.shots(&grid, &is_target, &pool, watch)? else { return Ok(None) };
         if !is_target.contains(&true) && !shots.iter().any(|shot| shot.end == iteration::End::Target) {
             let expected = "one that holds at a state of the grid, or on the way from one to the next";

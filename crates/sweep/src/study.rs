@@ -9,6 +9,7 @@ use toml::{Table, Value};
 use crate::SweepError;
 use crate::fit::Fit;
 use crate::motion::Motion;
+use crate::place::Written;
 use crate::state_space::Tabulation;
 
 /// A study, read from a TOML file.
@@ -29,6 +30,7 @@ pub struct Study {
     pub motion: Option<Motion>,
     /// What table of commands is sought, in the place of runs.
     pub tabulation: Option<Tabulation>,
+    pub(crate) written: Written,
 }
 
 /// What a plan is of.
@@ -91,6 +93,16 @@ impl Study {
         path: &Path,
         text: &str,
         table: impl FnOnce(&Path) -> Result<String, SweepError>,
+    ) -> Result<Self, SweepError> {
+        let written = Written::new(path, text);
+        Self::of_text(path, text, table, written.clone()).map_err(|error| written.placed(error))
+    }
+
+    fn of_text(
+        path: &Path,
+        text: &str,
+        table: impl FnOnce(&Path) -> Result<String, SweepError>,
+        written: Written,
     ) -> Result<Self, SweepError> {
         let document: Table = text.parse().map_err(|error: toml::de::Error| SweepError::Syntax {
             path: path.to_owned(),
@@ -165,6 +177,7 @@ impl Study {
             fit,
             motion,
             tabulation,
+            written,
         })
     }
 

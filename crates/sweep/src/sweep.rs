@@ -64,7 +64,7 @@ pub fn fingerprints(study: &Study, workers: Workers) -> Result<Vec<String>, Swee
     let count = workers.count.clamp(1, study.runs.len().max(1));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
     if !study.runs.is_empty() {
-        graphs::check(study, &read(study, 0)?)?;
+        graphs::check(study, &read(study, 0)?).map_err(|error| study.written.placed(error))?;
     }
     let numbers: Vec<usize> = (0..study.runs.len()).collect();
     let mut fingerprints = Vec::with_capacity(numbers.len());

@@ -93,7 +93,7 @@ fn what_cannot_be_regulated_is_named() {
         ("weight = 100", "weight = 0", "`plan.costs[0].weight` is 0; expected a number above 0"),
         ("weight = 100", "", "`plan.costs[0].weight` is missing"),
         ("weight = 100", "wait = 100", "plan.costs[0].wait"),
-        ("\"speed\"", "\"haste\"", "`plan.costs.probe` is haste; expected a probe: place, speed"),
+        ("\"speed\"", "\"haste\"", "`plan.costs[1].probe` is haste; expected a probe: place, speed"),
         ("\"linear_quadratic\"", "\"spacetime\"", "plan.costs"),
         (
             "\"linear_quadratic\"",

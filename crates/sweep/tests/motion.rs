@@ -114,12 +114,12 @@ fn what_cannot_be_planned_is_named() {
         (
             "probe = \"speed\"",
             "probe = \"haste\"",
-            "`plan.keys.probe` is haste; expected a probe: place, speed",
+            "`plan.keys[1].probe` is haste; expected a probe: place, speed",
         ),
         (
             "probe = \"speed\"",
             "probe = \"speed.x\"",
-            "`plan.keys.probe` is speed.x; expected speed, a scalar",
+            "`plan.keys[1].probe` is speed.x; expected speed, a scalar",
         ),
         (
             "time = 2",
@@ -418,9 +418,69 @@ fn scenes_that_remember_are_refused() {
     };
     let error = with("yields", "2").unwrap_err().to_string();
     assert!(
-        error.starts_with("`scene` is of steps that follow from what laws or the stepper remember"),
+        error.contains(
+            "motion.toml:2:1: `scene` is of steps that follow from what laws or the stepper remember"
+        ),
         "{error}"
     );
     // as long as it does not yield it is a spring
     assert_eq!(with("springs", "20").unwrap().ending, Ending::Converged);
+}
+
+/// A wall on the way to a key stops the cart, with no way on however it is pushed: the key that is missed is named, and what stands in the way.
+#[test]
+fn a_wall_on_the_way_is_told() {
+    let wall = |place: f64, how: &str| {
+        format!(
+            "[[networks.cart.constraints]]\nplane = {{ place = [{place}, 0, 0], normal = [-1, 0, 0] }}\nsense = \"at_least\"\n{how}\n[probes.place]"
+        )
+    };
+    let with = |folder: &str, wall: &str| {
+        let scene = [("[probes.place]", wall), ("\"verlet\"", "\"symplectic_euler\"")];
+        plan_of_changed(folder, &scene, &[], 1)
+    };
+    for (folder, place, how) in
+        [("stopped", 0.7, ""), ("bounced", 0.7, "restitution = 0.5"), ("held", 0.0, "")]
+    {
+        let found = with(folder, &wall(place, how)).unwrap();
+        assert_eq!(found.ending, Ending::Stalled, "{folder}: {:?}", found.warnings);
+        let key = "`plan.keys[0]` asks for `place` to be 1 m at 2 s, and it comes to ";
+        for words in [key, "stops the motion"] {
+            assert!(
+                found.warnings.iter().any(|warning| warning.contains(words)),
+                "{folder}: {:?}",
+                found.warnings
+            );
+        }
+        assert!(found.reached[0] < place + 1e-6, "{folder}: {:?}", found.reached);
+    }
+}
+
+/// Values of keys have units of what their probe measures; those of another kind, and numbers that cannot be computed with, are refused at their line.
+#[test]
+fn keys_have_units_and_places() {
+    let in_cm = plan("planned_cart", &[("value = 1", "value = \"100 cm\"")]).unwrap();
+    assert_same(&in_cm, &plan("planned_cart", &[]).unwrap(), 1e-12);
+    for (to, words) in [
+        (
+            "value = \"100 s\"",
+            "`plan.keys[0].value` is \"100 s\"; expected a finite number in m, or with a unit of its kind",
+        ),
+        ("least = \"1 kg\"", "`plan.keys[0].least` is \"1 kg\"; expected a finite number in m"),
+        ("value = 1e200", "expected a finite number, 1e100 at most, or one with its unit"),
+    ] {
+        let error = plan("planned_cart", &[("value = 1", to)]).map(|_| ()).unwrap_err().to_string();
+        // its own line, below that of its table
+        let place = format!("motion.toml:{}:1: ", line_of("value = 1"));
+        assert!(error.contains(words) && error.contains(&place), "{error}");
+    }
+    let weights = ("kind =", "weights = { \"cart.drive\" = 1e308 }\nkind =");
+    let error = plan("planned_cart", &[weights]).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("expected a number above 0, 1e100 at most"), "{error}");
+}
+
+/// From 1, in the study of `planned_cart`.
+fn line_of(words: &str) -> usize {
+    let text = std::fs::read_to_string(study("planned_cart")).unwrap();
+    1 + text.lines().position(|line| line.contains(words)).unwrap()
 }

@@ -120,6 +120,16 @@ fn what_cannot_be_tabulated_is_named() {
         (target, "target = \"x > 5\"", "`plan.target` is a condition that no state meets"),
         (target, "target = \"y < 5\"", "expected a condition on x, v"),
         (target, "", "`plan.target` is missing"),
+        (
+            target,
+            "target = \"abs(x) < 5\"",
+            "`plan.target` is a condition that every state of the grid meets",
+        ),
+        (
+            target,
+            &format!("{target}\nhold = \"0.1 ms\""),
+            "`plan.hold` is 0.0001; expected a whole number of periods",
+        ),
         (target, "target = \"x < -1.19 and v > 2.3\"", "`plan.target` is where nothing leads from"),
         ("[-8, 0, 8]", "[-9, 0, 8]", "is 9 N; expected up to the 8 N that its actuator gives"),
         ("[-8, 0, 8]", "[8, 8]", "expected a list of different finite commands"),

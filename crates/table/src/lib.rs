@@ -6,7 +6,7 @@
 mod parameter;
 mod value;
 
-pub use parameter::{Kind, Parameter, Range};
+pub use parameter::{Kind, MODERATE, Parameter, Range};
 pub use value::{Value, ValueError, Values, counted, four_digits, in_number, readable};
 
 /// One thing: its name, its page in the reference, its constructor `B` (usually a function pointer).

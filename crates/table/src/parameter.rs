@@ -1,6 +1,6 @@
 //! What a thing can be told.
 
-use crate::Value;
+use crate::{Value, readable};
 
 /// One parameter of an entry.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,9 @@ pub enum Kind {
     Choice(&'static [&'static str]),
 }
 
+/// The size of numbers whose squares and cubes are numbers still, at most, in SI units.
+pub const MODERATE: f64 = 1e100;
+
 /// The interval a number must lie in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -47,6 +50,8 @@ impl Range {
         Self { low: f64::NEG_INFINITY, high: f64::INFINITY, low_included: false, high_included: false };
     pub const POSITIVE: Self = Self { low: 0.0, ..Self::ANY };
     pub const NOT_NEGATIVE: Self = Self { low: 0.0, low_included: true, ..Self::ANY };
+    /// Above 0, and not so large that its square or its cube is no number.
+    pub const MODERATE: Self = Self { high: MODERATE, high_included: true, ..Self::POSITIVE };
 
     pub const fn open(low: f64, high: f64) -> Self {
         Self { low, high, low_included: false, high_included: false }
@@ -68,13 +73,16 @@ impl Range {
 
     /// In words: `above 0`, `between 0 and 0.5, ends excluded`.
     pub fn describe(&self) -> String {
-        let (low, high) = (self.low, self.high);
-        match (low.is_finite(), high.is_finite()) {
+        let are_finite = (self.low.is_finite(), self.high.is_finite());
+        let [low, high] = [self.low, self.high].map(readable);
+        match are_finite {
             (false, false) => "a finite number".to_owned(),
             (true, false) if self.low_included => format!("a number of at least {low}"),
             (true, false) => format!("a number above {low}"),
             (false, true) if self.high_included => format!("a number of at most {high}"),
             (false, true) => format!("a number below {high}"),
+            // the usual lower end, and an upper one that nobody comes to
+            (true, true) if *self == Self::MODERATE => format!("a number above {low}, {high} at most"),
             (true, true) => {
                 let ends = match (self.low_included, self.high_included) {
                     (true, true) => "ends included",

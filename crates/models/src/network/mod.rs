@@ -22,7 +22,7 @@ pub mod law;
 pub mod laws;
 mod layout;
 mod pair_tangent;
-pub mod parting;
+mod parting;
 mod piecewise;
 pub mod polyhedra;
 pub mod relations;

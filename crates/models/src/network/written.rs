@@ -276,6 +276,26 @@ pub fn constants<'a>(
     Ok((texts.iter().map(|(name, _)| name.as_str()).collect(), values))
 }
 
+/// Refuses parameters that a law does not name: misspelt ones, that would change nothing.
+///
+/// # Errors
+/// The first of them, with those that `naming` is said of, such as "`push` names".
+pub fn refuse_unnamed(
+    names: &[&str],
+    naming: &str,
+    is_named: impl Fn(usize) -> bool,
+) -> Result<(), LinkError> {
+    let Some(unnamed) = (0..names.len()).find(|at| !is_named(*at)) else { return Ok(()) };
+    let known: Vec<String> =
+        (0..names.len()).filter(|at| is_named(*at)).map(|at| format!("`{}`", names[at])).collect();
+    let known =
+        if known.is_empty() { "no parameter".to_owned() } else { format!("{} alone", known.join(", ")) };
+    Err(LinkError::text(
+        format!("parameters.{}", names[unnamed]),
+        format!("changes nothing: {naming} {known}"),
+    ))
+}
+
 /// A number that is written with or without a unit, in SI units; `None` of what is a formula.
 ///
 /// # Errors

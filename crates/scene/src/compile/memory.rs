@@ -43,6 +43,8 @@ struct Needs<'a> {
     bytes: u64,
     /// How large it is, in words.
     size: String,
+    /// What to have less of.
+    of: &'static str,
 }
 
 impl<'a> Needs<'a> {
@@ -52,6 +54,7 @@ impl<'a> Needs<'a> {
             site: &body.site,
             bytes: bytes_of(size, LINK, matrix_of(spec, &body.system)),
             size: format!("{} masses and at least {} links", size.points, size.cells),
+            of: "masses and links",
         }
     }
 }
@@ -92,7 +95,7 @@ pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
             // fillings bound the number of their points by themselves, and are counted when they are made; so is tissue
             MeshSpec::Shape { .. } | MeshSpec::Tissue(_) => return None,
         };
-        Some(Needs { body: &body.name, site: mesh.site(), bytes, size })
+        Some(Needs { body: &body.name, site: mesh.site(), bytes, size, of: "cells" })
     });
     check(&needs.collect::<Vec<_>>(), available_memory(), log);
 }
@@ -111,6 +114,7 @@ pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
             bytes: bytes_of(size, CELL, matrix_of(spec, &body.spec.system))
                 .saturating_add(bytes_of_frames(body)),
             size: counts(size),
+            of: "cells",
         }
     });
     check(&needs.collect::<Vec<_>>(), available_memory(), log);
@@ -123,6 +127,7 @@ pub fn is_too_large(body: &Body, size: MeshSize, draft: &Draft) -> bool {
         site: body.split.as_ref().map_or(&body.site, |split| &split.site),
         bytes: bytes_of(size, CELL, matrix_of(draft.spec, &body.system)),
         size: counts(size),
+        of: "cells",
     };
     check(&[needs], available_memory(), draft.log)
 }
@@ -174,12 +179,8 @@ fn check(needs: &[Needs], available: Option<u64>, log: &Log) -> bool {
         largest.body,
         largest.size
     );
-    log.add(
-        Code::TooLarge,
-        largest.site,
-        message,
-        "fewer cells, or an explicit stepper, which stores no matrix",
-    );
+    let expected = format!("fewer {}, or an explicit stepper, which stores no matrix", largest.of);
+    log.add(Code::TooLarge, largest.site, message, expected);
     true
 }
 
@@ -204,7 +205,7 @@ mod tests {
         let site = Site::default();
         let needs = |body, points, matrix| {
             let size = MeshSize { points, cells: 5 * points };
-            Needs { body, site: &site, bytes: bytes_of(size, CELL, matrix), size: counts(size) }
+            Needs { body, site: &site, bytes: bytes_of(size, CELL, matrix), size: counts(size), of: "cells" }
         };
         let explicit = needs("small", 1000, Matrix::None);
         assert_eq!(explicit.bytes, 1000 * 22 * 24 + 5000 * 250);

@@ -159,6 +159,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     check_force_names(&draft);
     pins::warn_of_idle(&mut draft);
     network::warn_of_steps(&mut draft);
+    network::warn_of_starts(&mut draft);
     network::warn_of_heat(&mut draft);
     doubts::warn(&mut draft);
     reduced::warn(&mut draft);

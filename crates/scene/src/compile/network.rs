@@ -3,6 +3,7 @@
 mod coincident;
 mod columns;
 mod constraints;
+mod contradicting;
 mod controls;
 mod ends;
 mod faces;
@@ -14,6 +15,7 @@ mod summary;
 mod table;
 mod views;
 
+pub use contradicting::warn_of_starts;
 pub use controls::add as add_controls;
 pub use ends::size;
 pub use fill::fill_all;
@@ -32,6 +34,7 @@ use souple_models::network::{
     Account, AsksFor, BuildLink, Crowd, CrowdDescription, Friction, Fusible, LinkDescription, LinkKernel,
     Links, Listing, Making, PAIR_MEMORY, Slide, Span,
 };
+use souple_table::{MODERATE, Value, readable};
 
 use super::bodies::Placed;
 use super::shape::Shape;
@@ -65,9 +68,11 @@ pub struct PlacedLinks {
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
     let places = network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.place(i)));
     let points: Vec<Vec3> = places.map(|place| body.placement.place(place)).collect();
-    if let Some(point) = points.iter().position(|point| !point.is_finite()) {
-        let message = format!("mass {point} starts at no finite place");
-        draft.log.add(Code::NotFinite, &body.site, message, "finite numbers");
+    let is_far = |point: &Vec3| !point.to_array().iter().all(|number| number.abs() <= MODERATE);
+    if let Some(point) = points.iter().position(is_far) {
+        let place = points[point].to_array().map(readable).join(", ");
+        let message = format!("mass {point} starts at ({place}) m, where nothing can be computed");
+        draft.log.add(Code::NotFinite, &body.site, message, format!("numbers up to {}", readable(MODERATE)));
         return None;
     }
     if points.is_empty() {
@@ -245,6 +250,16 @@ fn law(
     draft: &Draft,
 ) -> Option<Box<dyn LinkKernel>> {
     let chosen = chosen?;
+    for parameter in chosen.entry.parameters {
+        if let Some(Value::Number(number)) = chosen.values.get(parameter.name)
+            && number.abs() > MODERATE
+        {
+            let message = format!("`{}` is {}: its square is no number", parameter.name, readable(number));
+            let expected = format!("{}, {} at most", parameter.expected(), readable(MODERATE));
+            draft.log.add(Code::OutOfRange, chosen.site_of(parameter.name), message, expected);
+            return None;
+        }
+    }
     match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
         Ok(law) => Some(law),
         Err(error) => {

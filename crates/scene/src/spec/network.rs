@@ -103,7 +103,7 @@ pub(super) static MASSES: Keys = Keys::new(
         Key::new("lattice", Shape::Table(&LATTICE), "they start on a lattice"),
         Key::new("fill", Shape::Table(&fill::FILL), "they fill a shape"),
         Key::new("from", Shape::Table(&kept::FROM_FILE), "they start where a file has points"),
-        Key::number("mass", "kg", Range::POSITIVE, "of each").required(),
+        Key::number("mass", "kg", Range::MODERATE, "of each").required(),
         Key::new("fixed", Shape::Boolean, "they stay where they are, whatever pulls")
             .or(Value::Boolean(false)),
         Key::vector("velocity", "m/s", "at the start, over that of the network").or(Value::Vector([0.0; 3])),
@@ -589,7 +589,15 @@ impl MassGroup {
     pub(super) fn read(name: String, reader: &Reader) -> Self {
         let written = reader.written(&["positions", "line", "ring", "polygon", "lattice", "fill", "from"]);
         let places = match written[..] {
-            ["positions"] => Some(Places::Listed(reader.vectors("positions"))),
+            ["positions"] => {
+                let positions = reader.maybe_vectors("positions");
+                if positions.as_ref().is_some_and(Vec::is_empty) {
+                    let message = format!("`{name}` is a group of no masses");
+                    let site = reader.site_of("positions");
+                    reader.log().add(Code::EmptyRegion, &site, message, "at least one place");
+                }
+                Some(Places::Listed(positions.unwrap_or_default()))
+            }
             ["line"] => reader.table("line").map(|line| Places::on_line(&line)),
             ["ring"] => reader.table("ring").and_then(|ring| Places::on_ring(&ring)),
             ["polygon"] => reader.table("polygon").and_then(|polygon| Places::on_polygon(&polygon)),
@@ -597,7 +605,7 @@ impl MassGroup {
             ["fill"] => reader.table("fill").map(|fill| Places::Filled(Box::new(FillSpec::read(&fill)))),
             ["from"] => reader.table("from").map(|file| Places::File(Box::new(FileSpec::read(&file)))),
             _ => {
-                let message = format!("masses start in one way, these say {}", written.len());
+                let message = format!("masses start in one way, these say {}", in_words(&written));
                 reader.log().add(
                     Code::WrongType,
                     &reader.site(),
@@ -725,6 +733,11 @@ impl Places {
     }
 }
 
+/// Keys that are written of those that say the same.
+fn in_words(written: &[&str]) -> String {
+    if written.is_empty() { "none".to_owned() } else { written.join(" and ") }
+}
+
 impl Join {
     /// Which of the keys that join masses of the groups `of` is written; `whole` is blamed where none is.
     fn read(reader: &Reader, of: &[String], whole: &Site) -> Option<Self> {
@@ -762,7 +775,7 @@ impl Join {
                 ends.map(|(from, to)| Join::Ends(from, to))
             }
             _ => {
-                let message = format!("links join masses in one way, these say {}", written.join(" and "));
+                let message = format!("links join masses in one way, these say {}", in_words(&written));
                 let expected = "one of chain, loop, all, paired, reach, or from and to";
                 reader.log().add(Code::Conflict, whole, message, expected);
                 None

@@ -79,7 +79,7 @@ pub(crate) static RUN: Keys = Keys::new(
     "run",
     "what `souple run` does unless told otherwise",
     &[
-        Key::number("duration", "s", Range::NOT_NEGATIVE, "simulated time").or(Value::Number(1.0)),
+        Key::number("duration", "s", Range::POSITIVE, "simulated time").or(Value::Number(1.0)),
         Key::integer("frames", Range::closed(0.0, 1e6), "pictures of the state written along the way")
             .or(Value::Integer(30)),
         Key::integer("seed", Range::at_least(0.0), "of the random generators").or(Value::Integer(0)),

@@ -155,9 +155,18 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     for (name, count) in &counts {
         print_line(format_args!("  {count:>9} {name}"));
     }
-    for system in &systems {
+    for (index, system) in systems.iter().enumerate() {
         let longest = system["longest_stable_step_seconds"].as_f64();
-        let stable = longest.map_or("any step is stable about the first state".to_owned(), |step| {
+        // links that do nothing at first are not in what the first state tells
+        let safe =
+            networks.iter().filter(|network| network.system == index).filter_map(|network| network.safe_step);
+        let any = match safe.reduce(f64::min) {
+            None => "any step is stable about the first state".to_owned(),
+            Some(safe) => format!(
+                "any step is stable about the first state, where what is stiff does not act yet; {safe:.3e} s is safe whatever acts"
+            ),
+        };
+        let stable = longest.map_or(any, |step| {
             let of =
                 system["stiffest_force"].as_str().map_or_else(String::new, |name| format!(", by `{name}`"));
             format!("longest stable step {step:.3e} s{of}")

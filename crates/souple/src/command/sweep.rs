@@ -42,6 +42,17 @@ impl From<SweepError> for Refusal {
     fn from(error: SweepError) -> Self {
         let message = error.to_string();
         match error {
+            SweepError::At { path, line, column, error } => {
+                let key =
+                    if let SweepError::Value { path, .. } = &*error { path.clone() } else { String::new() };
+                let mut refusal = Self::from(*error);
+                for error in &mut refusal.errors {
+                    error["file"] = json!(path.display().to_string());
+                    (error["line"], error["column"]) = (json!(line), json!(column));
+                    (error["path"], error["message"]) = (json!(key), json!(message));
+                }
+                refusal
+            }
             SweepError::Value { value, expected, .. } => Self::request("study", value, expected, message),
             SweepError::Read { .. } | SweepError::Syntax { .. } => {
                 Self::request("study", "", "a study: TOML with `scene` and `vary`, `fit` or `plan`", message)

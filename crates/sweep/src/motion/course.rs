@@ -83,6 +83,7 @@ impl Course {
         let (mut keys, mut warnings) = (Vec::new(), Vec::new());
         for (of, key) in motion.keys.iter().enumerate() {
             let measured = key.probe.among(&probes)?;
+            key.quantities.iter().try_for_each(|quantity| quantity.check(measured.0.unit))?;
             for period in periods_of(of, key, model.period)? {
                 keys.push(Key { of, period, measured: measured.clone(), band: key.band });
             }
@@ -283,7 +284,7 @@ pub(super) fn failed(message: impl ToString) -> SweepError {
 }
 
 /// How many periods a time is.
-pub(super) fn whole(place: &str, time: f64, period: f64) -> Result<usize, SweepError> {
+pub(crate) fn whole(place: &str, time: f64, period: f64) -> Result<usize, SweepError> {
     let periods = time / period;
     if (periods - periods.round()).abs() > OFF * periods || periods < 0.5 {
         let expected = format!("a whole number of periods of {period} s");

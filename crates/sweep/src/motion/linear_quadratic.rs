@@ -89,7 +89,11 @@ struct Policy {
 
 impl Regulator {
     fn new(planner: &Planner, course: Course, costs: &[Cost]) -> Result<Self, SweepError> {
-        let costs = costs.iter().map(|cost| Ok((cost.probe.among(&course.probes)?, cost.value, cost.weight)));
+        let costs = costs.iter().map(|cost| {
+            let measured = cost.probe.among(&course.probes)?;
+            cost.quantities.iter().try_for_each(|quantity| quantity.check(measured.0.unit))?;
+            Ok((measured, cost.value, cost.weight))
+        });
         Ok(Self {
             costs: costs.collect::<Result<_, SweepError>>()?,
             key_weights: planner.motion.keys.iter().map(|key| key.weight).collect(),

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
-use super::{Cost, KeyState, Kind, Motion, Spacetime, When, Windows};
+use super::{Cost, KeyState, Kind, Motion, Quantity, Spacetime, When, Windows};
 use crate::SweepError;
-use crate::fit::{Wanted, as_number, as_quantity, refuse_unknown};
+use crate::fit::{Wanted, as_number, as_quantity, is_moderate, refuse_unknown};
 
 const KEYS: &[&str] =
     &["kind", "keys", "weights", "tolerance", "iterations", "windows", "start", "starts", "seed"];
@@ -17,6 +17,7 @@ const WEIGHTED_KEY_KEYS: &[&str] = &["time", "probe", "value", "weight"];
 const COST_KEYS: &[&str] = &["probe", "value", "weight"];
 const WINDOW_KEYS: &[&str] = &["from", "until"];
 const SLIDING_KEYS: &[&str] = &["length", "overlap"];
+const WEIGHT: &str = "a number above 0, 1e100 at most";
 /// Starts, at most.
 const MOST_STARTS: usize = 10_000;
 
@@ -76,9 +77,9 @@ impl Motion {
 }
 
 fn weight((name, value): (&String, &Value)) -> Result<(String, f64), SweepError> {
-    let weight = as_number(value).filter(|weight| *weight > 0.0 && weight.is_finite());
+    let weight = as_number(value).filter(|weight| *weight > 0.0 && is_moderate(weight));
     let place = format!("plan.weights.\"{name}\"");
-    let weight = weight.ok_or_else(|| SweepError::value(place, value.to_string(), "a number above 0"))?;
+    let weight = weight.ok_or_else(|| SweepError::value(place, value.to_string(), WEIGHT))?;
     Ok((name.clone(), weight))
 }
 
@@ -164,7 +165,8 @@ impl Kind {
         let duration = match table.get("duration") {
             None => None,
             Some(value) => {
-                let seconds = as_number(value).filter(|seconds| *seconds > 0.0 && seconds.is_finite());
+                let seconds =
+                    as_quantity(value, "s").filter(|seconds| *seconds > 0.0 && is_moderate(seconds));
                 Some(seconds.ok_or_else(|| {
                     SweepError::value("plan.duration", value.to_string(), "seconds above 0")
                 })?)
@@ -211,26 +213,47 @@ impl<'a> Entry<'a> {
     }
 
     fn number(&self, key: &str) -> Option<f64> {
-        self.get(key).and_then(as_number).filter(|number| number.is_finite())
+        self.get(key).and_then(as_number).filter(is_moderate)
     }
 
     fn seconds(&self, key: &str) -> Option<f64> {
-        self.get(key).and_then(|value| as_quantity(value, "s")).filter(|seconds| seconds.is_finite())
+        self.get(key).and_then(|value| as_quantity(value, "s")).filter(is_moderate)
     }
 
-    fn probe(&self, key: &'static str) -> Result<Wanted, SweepError> {
+    fn probe(&self) -> Result<Wanted, SweepError> {
         let probe = self.get("probe").and_then(Value::as_str);
         let expected = "a probe of the scene, with .x, .y or .z of a vector";
-        Ok(Wanted::read(key, probe.ok_or_else(|| self.fault("probe", expected))?))
+        let probe = probe.ok_or_else(|| self.fault("probe", expected))?;
+        Ok(Wanted::read(format!("{}.probe", self.place), probe))
     }
 
     fn value(&self) -> Result<f64, SweepError> {
-        self.number("value").ok_or_else(|| self.fault("value", "a finite number"))
+        self.measured("value")
+    }
+
+    /// A number of the probe, which may have a unit that [`Quantity::check`] has to look at.
+    fn measured(&self, key: &str) -> Result<f64, SweepError> {
+        let number = match self.get(key) {
+            Some(Value::String(text)) => {
+                souple_formal::parse_quantity(text).ok().map(|quantity| quantity.value).filter(is_moderate)
+            }
+            _ => self.number(key),
+        };
+        number.ok_or_else(|| self.fault(key, "a finite number, 1e100 at most, or one with its unit"))
+    }
+
+    /// Numbers of the probe that have a unit.
+    fn quantities(&self) -> Vec<Quantity> {
+        let with_unit = ["value", "least", "most"].into_iter().filter_map(|key| {
+            let text = self.get(key)?.as_str()?.to_owned();
+            Some(Quantity { key: format!("{}.{key}", self.place), text })
+        });
+        with_unit.collect()
     }
 
     fn weight(&self) -> Result<f64, SweepError> {
         let weight = self.number("weight").filter(|weight| *weight > 0.0);
-        weight.ok_or_else(|| self.fault("weight", "a number above 0"))
+        weight.ok_or_else(|| self.fault("weight", WEIGHT))
     }
 
     /// `from` and `until`, the first before the second [s].
@@ -268,7 +291,7 @@ impl<'a> Entry<'a> {
         }
         let side = |key: &str, open: f64| match self.get(key) {
             None => Ok(open),
-            Some(_) => self.number(key).ok_or_else(|| self.fault(key, "a finite number")),
+            Some(_) => self.measured(key),
         };
         let band = [side("least", f64::NEG_INFINITY)?, side("most", f64::INFINITY)?];
         if band[0] > band[1] {
@@ -282,7 +305,12 @@ impl<'a> Entry<'a> {
 impl Cost {
     fn read(index: usize, value: &Value) -> Result<Self, SweepError> {
         let entry = Entry::read(format!("plan.costs[{index}]"), value, COST_KEYS)?;
-        Ok(Self { probe: entry.probe("plan.costs.probe")?, value: entry.value()?, weight: entry.weight()? })
+        Ok(Self {
+            probe: entry.probe()?,
+            value: entry.value()?,
+            weight: entry.weight()?,
+            quantities: entry.quantities(),
+        })
     }
 }
 
@@ -294,10 +322,11 @@ impl KeyState {
         };
         let entry = Entry::read(format!("plan.keys[{index}]"), value, keys)?;
         Ok(Self {
-            probe: entry.probe("plan.keys.probe")?,
+            probe: entry.probe()?,
             when: entry.when()?,
             band: entry.band()?,
             weight: entry.get("weight").map(|_| entry.weight()).transpose()?,
+            quantities: entry.quantities(),
         })
     }
 }

@@ -13,6 +13,7 @@
 use std::ops::Range;
 
 use souple_solve::quadratic::{self, NoLeast, QuadraticProgram, beyond};
+use souple_table::readable;
 
 use super::course::{Course, OFF, Trajectory, failed, whole};
 use super::slopes::DIFFERENCE;
@@ -36,6 +37,12 @@ const MET: f64 = 1e-9;
 /// A change of what is paid and missed below this share of it is rounding, and no reason to turn back.
 const ROUNDING: f64 = 1e-13;
 
+/// What is said where slopes promise what does not come, and nothing else is known.
+const THROWN_BACK: &str = "commands that slopes promise to bring keys nearer do not: something on the way stops the motion or throws it back, as a \
+                           wall, an obstacle or the end of a guide does";
+/// What is said where no commands can be computed, and nothing else is known.
+const UNLIKE: &str = "no commands can be computed that bring keys nearer: keys and `weights` are of very unlike sizes, or commands hardly change keys";
+
 /// A search from some commands.
 pub(super) struct Search<'a> {
     pub course: Course,
@@ -43,10 +50,14 @@ pub(super) struct Search<'a> {
     windows: Vec<Range<usize>>,
     /// Of each key: what a unit of a miss costs where trials are weighed.
     prices: Vec<f64>,
-    /// Of each key: `√(Σ g²/w)` by the commands of the window that changes it most.
+    /// Of each key: `√(Σ g²/w)` by the commands of the window that changes it most, in the last iteration.
     lengths: Vec<f64>,
+    /// The least of these that there was: differences across an impact are of a leap.
+    least_lengths: Vec<f64>,
     /// Of each control, whether a key depends on it.
     is_felt: Vec<bool>,
+    /// Why no step came nearer, where that is known.
+    why: Option<String>,
 }
 
 /// Keys about a motion, linear in the commands of a window.
@@ -106,7 +117,9 @@ impl<'a> Search<'a> {
             windows,
             prices: vec![0.0; keys],
             lengths: vec![0.0; keys],
+            least_lengths: vec![f64::INFINITY; keys],
             is_felt: vec![false; count],
+            why: None,
             course,
         })
     }
@@ -129,6 +142,7 @@ impl<'a> Search<'a> {
         let (mut iterations, mut ending) = (0, Ending::OutOfIterations);
         while iterations < self.motion.iterations {
             iterations += 1;
+            self.lengths.fill(0.0);
             let turns = (0..self.windows.len()).map(|at| {
                 let window = self.windows[at].clone();
                 self.turn(&mut now, window, iterations == 1)
@@ -171,7 +185,13 @@ impl<'a> Search<'a> {
         }
         let linear = self.linear(window, rows);
         let at = self.of_window(&now.commands, &linear.window);
-        let sought = self.least(&linear, &now.reached, &at)?;
+        let sought = match self.least(&linear, &now.reached, &at)? {
+            Some(sought) => sought,
+            None => {
+                self.why = Some(self.stopped(&linear).unwrap_or_else(|| UNLIKE.to_owned()));
+                return Ok(Turn::Stalled);
+            }
+        };
         let change: Vec<f64> = sought.commands.iter().zip(&at).map(|(to, from)| to - from).collect();
         let all = self.course.cost(&self.with(now, &linear.window, &sought.commands));
         if self.course.cost(&change) <= self.motion.tolerance.powi(2) * all {
@@ -185,6 +205,7 @@ impl<'a> Search<'a> {
         Ok(match self.descend(now, &linear, &sought)? {
             Some(next) => {
                 *now = next;
+                self.why = None;
                 Turn::Taken
             }
             None => Turn::Stalled,
@@ -201,6 +222,7 @@ impl<'a> Search<'a> {
             let length = length(&self.weighted(&row));
             self.lengths[key] = self.lengths[key].max(length);
             if length > 0.0 {
+                self.least_lengths[key] = self.least_lengths[key].min(length);
                 linear.keys.push(key);
                 linear.rows.push(row);
                 linear.lengths.push(length);
@@ -253,8 +275,8 @@ impl<'a> Search<'a> {
     }
 
     /// Commands of the window for which the linearised keys, which come to `reached` under the commands `at`, are met at the least effort, or
-    /// missed by the least.
-    fn least(&self, linear: &Linear, reached: &[f64], at: &[f64]) -> Result<Sought, SweepError> {
+    /// missed by the least. `None`: rows of keys are so unlike that none can be computed.
+    fn least(&self, linear: &Linear, reached: &[f64], at: &[f64]) -> Result<Option<Sought>, SweepError> {
         let band = |(key, row): (&usize, &Vec<f64>)| {
             let from = dot(row, at) - reached[*key];
             self.course.keys[*key].band.map(|side| side + from)
@@ -267,7 +289,8 @@ impl<'a> Search<'a> {
         };
         let size = to_mend(&vec![0.0; at.len()]);
         if size == 0.0 {
-            return Ok(Sought { commands: vec![0.0; at.len()], multipliers: vec![0.0; bands.len()] });
+            let (commands, multipliers) = (vec![0.0; at.len()], vec![0.0; bands.len()]);
+            return Ok(Some(Sought { commands, multipliers }));
         }
         let controls = self.course.controls.iter().zip(&self.course.weights).cycle().take(at.len());
         let mut program = QuadraticProgram {
@@ -285,19 +308,17 @@ impl<'a> Search<'a> {
             for (row, length) in program.rows.iter_mut().zip(&linear.lengths) {
                 row.price = price * size / length;
             }
-            program.solve(&|| self.course.is_stopped()).map_err(|why| match why {
-                NoLeast::Interrupted => failed("it was interrupted"),
-                NoLeast::Unsolved => {
-                    let expected = "keys and `weights` of alike sizes, that commands reach, and nothing on the way that stops the motion as a wall does";
-                    SweepError::value("plan.keys", "a motion with no commands that can be computed", expected)
-                }
-            })
+            match program.solve(&|| self.course.is_stopped()) {
+                Ok(least) => Ok(Some(least)),
+                Err(NoLeast::Unsolved) => Ok(None),
+                Err(NoLeast::Interrupted) => Err(failed("it was interrupted")),
+            }
         };
         let mut least = at_price(PRICES[0])?;
-        if to_mend(&least.values) > MET * size {
+        if least.as_ref().is_some_and(|least| to_mend(&least.values) > MET * size) {
             least = at_price(PRICES[1])?;
         }
-        Ok(Sought { commands: least.values, multipliers: least.multipliers })
+        Ok(least.map(|least| Sought { commands: least.values, multipliers: least.multipliers }))
     }
 
     /// As far towards what is sought as what is paid and missed falls; `None` where it falls nowhere.
@@ -329,16 +350,35 @@ impl<'a> Search<'a> {
             if falls(self, &next, share) {
                 return Ok(Some(next));
             }
-            if halvings == 0 {
-                let again = self.least(linear, &next.reached, &commands)?;
-                if let Some(next) = self.tried(now, linear, &again.commands)?
-                    && falls(self, &next, share)
-                {
-                    return Ok(Some(next));
-                }
+            if halvings == 0
+                && let Some(again) = self.least(linear, &next.reached, &commands)?
+                && let Some(next) = self.tried(now, linear, &again.commands)?
+                && falls(self, &next, share)
+            {
+                return Ok(Some(next));
             }
         }
+        // where the step is smooth, a small enough part of the way brings a share of what is forecast
+        if forecast > self.motion.tolerance * before {
+            self.why = Some(self.stopped(linear).unwrap_or_else(|| THROWN_BACK.to_owned()));
+        }
         Ok(None)
+    }
+
+    /// What stops the motion, in words: early commands change nothing of a key that later ones change.
+    fn stopped(&self, linear: &Linear) -> Option<String> {
+        let count = self.course.controls.len();
+        let told = linear.keys.iter().zip(&linear.rows).filter_map(|(key, row)| {
+            let most = row.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
+            let without = row.iter().take_while(|slope| slope.abs() <= ALIKE * most).count() / count;
+            (without > 0).then_some((without, &self.motion.keys[self.course.keys[*key].of].probe))
+        });
+        let (periods, probe) = told.max_by_key(|(periods, _)| *periods)?;
+        let time = (linear.window.start + periods) as f64 * self.course.world.model().period;
+        Some(format!(
+            "commands before {} s change nothing of `{probe}`, and later ones do: something stops the motion by then, as a wall or an obstacle does",
+            readable(time)
+        ))
     }
 
     /// The motion with other commands in a window; `None` where it cannot be stepped.
@@ -384,6 +424,7 @@ impl<'a> Search<'a> {
             )
         }));
         found.warnings.extend(missed);
+        found.warnings.extend(self.why.take().filter(|_| ending == Ending::Stalled));
         Ok(found)
     }
 
@@ -395,8 +436,14 @@ impl<'a> Search<'a> {
         for (at, (key, reached)) in self.course.keys.iter().zip(&now.reached).enumerate() {
             let by = beyond(*reached, key.band);
             let side = reached - by;
-            let of_rounding = if self.lengths[at] > 0.0 { 0.0 } else { reached.abs() + side.abs() };
-            let is_met = by.abs() <= self.motion.tolerance * (self.lengths[at] * size).max(of_rounding);
+            // where the step is not smooth its slopes tell nothing
+            let length = if self.why.is_none() {
+                self.lengths[at]
+            } else {
+                self.lengths[at].min(self.least_lengths[at])
+            };
+            let of_rounding = if length > 0.0 { 0.0 } else { reached.abs() + side.abs() };
+            let is_met = by.abs() <= self.motion.tolerance * (length * size).max(of_rounding);
             if !is_met && worst[key.of].is_none_or(|(_, most)| by.abs() > most.abs()) {
                 worst[key.of] = Some((at, by));
             }

@@ -7,7 +7,7 @@ use souple_scene::{NumberOfMass, Planned, PlannedControl, Scene, StateSpace};
 use super::iteration::{End, Grid, MOST_NUMBERS, Place, Shot};
 use super::{Tabulation, in_words, refused};
 use crate::SweepError;
-use crate::motion::{Coordinate, coordinates};
+use crate::motion::{Coordinate, coordinates, whole};
 use crate::study::Study;
 
 /// By how much what the state does not say may be off where it is set anew, as a share of what the grid spans, and what a step may make of
@@ -65,7 +65,7 @@ impl<'a> Shooter<'a> {
             sets: sets(tabulation, first, &controls)?,
             target: tabulation.target()?,
             cost: tabulation.cost()?,
-            hold: tabulation.hold.map_or(HOLD, |hold| ((hold / period).round() as usize).max(1)),
+            hold: tabulation.hold.map_or(Ok(HOLD), |hold| whole("plan.hold", hold, period))?,
             start: state.clone(),
             world: model.start(state),
             // in the order of levels

@@ -13,7 +13,9 @@ use souple_table::{Parameter, Range, Value};
 
 use crate::network::cases::{Questions, Truth};
 use crate::network::law::{AsksFor, LinkEntry, LinkError, Making, Moment, Reach, Response};
-use crate::network::written::{OneByOne, WrittenLaw, check_names, formula, formula_within, number_in};
+use crate::network::written::{
+    OneByOne, WrittenLaw, check_names, formula, formula_within, number_in, refuse_unnamed,
+};
 
 /// Numbers that a link remembers: the state, `K`, `Z`, `L0`, and `dV` of the step before.
 const STATE: usize = 0;
@@ -282,11 +284,13 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
         "" => None,
         text => Some(formula("external", text, &["t"])?),
     };
-    let parameters = making.values.texts("parameters").iter().map(|(name, _)| name.as_str());
-    check_names("parameters", parameters, &["D", "L", "dV"])?;
+    let parameters = making.values.texts("parameters");
+    let parameter_names: Vec<&str> = parameters.iter().map(|(name, _)| name.as_str()).collect();
+    check_names("parameters", parameter_names.iter().copied(), &["D", "L", "dV"])?;
     let reader = Words {
         names: &names,
-        parameters: making.values.texts("parameters"),
+        parameters,
+        are_named: parameters.iter().map(|_| Cell::new(false)).collect(),
         timestep: making.timestep,
         has_external: external.is_some(),
         asks: Cell::default(),
@@ -295,6 +299,7 @@ fn read(making: &Making) -> Result<Conditional, LinkError> {
     for (name, text) in texts {
         states.push(reader.state(Said { place: &format!("states.{name}"), text })?);
     }
+    refuse_unnamed(&parameter_names, "its states name", |at| reader.are_named[at].get())?;
     let compares_moved = |transition: &Transition| {
         use Condition::{ChangesSign, Grows, Shrinks};
         matches!(
@@ -390,6 +395,8 @@ struct Said<'a> {
 struct Words<'a> {
     names: &'a [&'a str],
     parameters: &'a [(String, String)],
+    /// Whether states name each of them, as far as they are read.
+    are_named: Vec<Cell<bool>>,
     timestep: f64,
     has_external: bool,
     /// What conditions have asked for so far.
@@ -532,7 +539,11 @@ impl Words<'_> {
 
     /// A number in SI units, a quantity of the kind of `unit` or the name of a parameter.
     fn number(&self, said: Said, words: &str, text: &str, unit: &str) -> Result<f64, LinkError> {
-        let named = self.parameters.iter().find(|(name, _)| name == text);
+        let named = self.parameters.iter().zip(&self.are_named).find(|((name, _), _)| name == text);
+        let named = named.map(|(parameter, is_named)| {
+            is_named.set(true);
+            parameter
+        });
         let text = named.map_or(text, |(_, value)| value);
         let formula = || match named {
             Some((name, _)) => formula(&format!("parameters.{name}"), text, &[]),

@@ -13,7 +13,7 @@ use crate::network::cases::{Questions, Truth};
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::written::{
     ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, check_names, constants, formula,
-    formula_within,
+    formula_within, refuse_unnamed,
 };
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
@@ -51,6 +51,14 @@ impl State {
         let is_constant = !(0..self.push.variables().len()).any(|variable| self.push.depends_on(variable));
         let moves_on = !self.updates.is_empty() || self.energy.is_some() || self.loss.is_some();
         is_constant && self.push.evaluate(&[0.0; ARGUMENTS]) == 0.0 && !moves_on
+    }
+
+    /// Whether anything that it says names a variable.
+    fn depends_on(&self, position: usize) -> bool {
+        let set = self.settings.iter().chain(&self.updates).map(|(_, formula)| formula);
+        let mut formulas = set.chain([&self.push]).chain(&self.energy).chain(&self.loss);
+        formulas.any(|formula| formula.depends_on(position))
+            || self.transitions.iter().any(|(condition, _)| condition.depends_on(position))
     }
 
     /// Without force, for good.
@@ -240,7 +248,8 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
             format!("holds {} numbers; at most {}", remembered.len() - 1, WRITTEN_MEMORY - 2),
         ));
     }
-    let variables: Vec<&str> = VARIABLES.into_iter().chain(remembered.iter().copied()).chain(names).collect();
+    let variables: Vec<&str> =
+        VARIABLES.into_iter().chain(remembered.iter().copied()).chain(names.iter().copied()).collect();
     let mut states = Vec::new();
     let state_names: Vec<&str> = texts("states").iter().map(|(name, _)| name.as_str()).collect();
     for (name, push) in texts("states") {
@@ -315,6 +324,11 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     for (name, start) in texts("memory") {
         starts.push(formula(&format!("memory.{name}"), start, &variables)?);
     }
+    refuse_unnamed(&names, "its formulas name", |at| {
+        let position = unknowns + at;
+        starts.iter().any(|start| start.depends_on(position))
+            || states.iter().any(|state| state.depends_on(position))
+    })?;
     Ok(FiniteState { states, starts, constants, timestep: making.timestep })
 }
 

@@ -7,7 +7,7 @@ use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Moment, Reach, Response};
-use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formula};
+use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formula, refuse_unnamed};
 
 /// What formulas of links may refer to, before the parameters of the scene.
 const VARIABLES: [&str; 5] = ["D", "D_before", "V", "L0", "t"];
@@ -120,8 +120,9 @@ pub const ENTRY: LinkEntry = LinkEntry {
                 return Err(LinkError::text("push", what));
             }
         };
-        let variables: Vec<&str> = VARIABLES.into_iter().chain(names).collect();
+        let variables: Vec<&str> = VARIABLES.into_iter().chain(names.iter().copied()).collect();
         let formula = formula(place, text, &variables)?;
+        refuse_unnamed(&names, &format!("`{place}` names"), |at| formula.depends_on(VARIABLES.len() + at))?;
         if kind == Kind::Energy && (formula.depends_on(1) || formula.depends_on(2)) {
             let what =
                 "depends on D_before or V: an energy is of D alone, dampers belong to a `push`".to_owned();

@@ -6,7 +6,9 @@ use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
 use crate::network::rheology::{self, Network};
-use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula, number_in};
+use crate::network::written::{
+    OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula, number_in, refuse_unnamed,
+};
 
 /// `φ = -Q(q)` with `q = D - S`; remembers the deformations of dampers and sliders.
 #[derive(Debug)]
@@ -66,9 +68,14 @@ fn read(making: &Making) -> Result<Rheological, LinkError> {
     let (names, values) = constants(texts, 0, &[])?;
     // what is wrong with a parameter is shown there
     let wrong = RefCell::new(None);
+    let named_in_text = RefCell::new(vec![false; names.len()]);
     let number = |text: &str, unit: &str| {
         // what stands for a parameter has the unit of that
-        let named = texts.iter().find(|(name, _)| name == text);
+        let named = texts.iter().position(|(name, _)| name == text);
+        if let Some(at) = named {
+            named_in_text.borrow_mut()[at] = true;
+        }
+        let named = named.map(|at| &texts[at]);
         let written = named.map_or(text, |(_, value)| value);
         let read = number_in(written, unit);
         if let (Some((name, _)), Some(Err(problem))) = (named, &read) {
@@ -76,7 +83,12 @@ fn read(making: &Making) -> Result<Rheological, LinkError> {
             *wrong.borrow_mut() = Some(LinkError::text(format!("parameters.{name}"), what));
         }
         read.unwrap_or_else(|| match formula("network", text, &names) {
-            Ok(formula) => Ok(formula.evaluate(&values)),
+            Ok(formula) => {
+                for (at, is_named) in named_in_text.borrow_mut().iter_mut().enumerate() {
+                    *is_named |= formula.depends_on(at);
+                }
+                Ok(formula.evaluate(&values))
+            }
             Err(LinkError::Formula { error, .. }) => Err(error.without_place()),
             Err(error) => Err(error.to_string()),
         })
@@ -88,5 +100,6 @@ fn read(making: &Making) -> Result<Rheological, LinkError> {
         let what = format!("cannot be built: {}", error.without_place());
         LinkError::Text { place: "network".to_owned(), what, part: error.span() }
     })?;
+    refuse_unnamed(&names, "`network` names", |at| named_in_text.borrow()[at])?;
     Ok(Rheological { network, timestep: making.timestep })
 }

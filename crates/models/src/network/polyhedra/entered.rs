@@ -137,11 +137,7 @@ impl<'a> Inside<'a> {
             let [from, to] = [a, b].map(|end| normal.dot(end - triangle[0]));
             let share = from / (from - to);
             let through = a + (b - a) * share;
-            let is_within = (0..3).all(|at| {
-                let (start, end) = (triangle[at], triangle[(at + 1) % 3]);
-                let inward = normal.cross(end - start);
-                inward.dot(through - start) >= -tolerance * inward.length()
-            });
+            let is_within = within_border(triangle, normal, through) >= -tolerance;
             (share > 0.0 && share < 1.0 && is_within).then_some(share)
         };
         let mut shares: Vec<f64> = [0.0, 1.0].into_iter().chain(self.places().filter_map(crossing)).collect();
@@ -164,9 +160,15 @@ fn passes_through([a, b]: [Vec3; 2], triangle: [Vec3; 3], tolerance: f64) -> boo
         return false;
     }
     let through = a + (b - a) * (from / (from - to));
-    (0..3).all(|at| {
+    within_border(triangle, normal, through) > tolerance
+}
+
+/// How far a point of the plane of a triangle is from the nearest of its sides, below 0 beyond one [m].
+fn within_border(triangle: [Vec3; 3], normal: Vec3, point: Vec3) -> f64 {
+    let from_side = |at: usize| {
         let (start, end) = (triangle[at], triangle[(at + 1) % 3]);
         let inward = normal.cross(end - start);
-        inward.dot(through - start) > tolerance * inward.length()
-    })
+        inward.dot(point - start) / inward.length()
+    };
+    (0..3).map(from_side).fold(f64::INFINITY, f64::min)
 }

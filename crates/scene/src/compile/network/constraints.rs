@@ -138,7 +138,7 @@ pub fn rods(network: &Network, points: &[Vec3], draft: &Draft) -> Option<Vec<[u3
 }
 
 /// Each group that is a rigid body, by its name, with its rods; `None` where rods do not hold it.
-fn rigid_groups<'a>(
+pub(super) fn rigid_groups<'a>(
     spec: &'a ConstraintSpec,
     network: &Network,
     points: &[Vec3],

@@ -121,7 +121,43 @@ fn slowest(relation: &dyn Relation, masses: &[f64], positions: &[Vec3]) -> Optio
     [0, 1, 2].map(of).into_iter().filter(|slope| *slope > 0.0).reduce(f64::min)
 }
 
+/// The mass of a network that bears its steps least, where it may not bear them.
+struct Worst<'a> {
+    mass: usize,
+    /// Of what a step bears, above 1.
+    share: f64,
+    /// [s]
+    timestep: f64,
+    is_linked: bool,
+    /// Neighbours that it may meet, by crowds.
+    met: Vec<(usize, &'a str)>,
+}
+
+/// A step that masses bear whatever their links and crowds come to [s]; `None` where they bear those that they are taken in.
+pub fn safe_step(draft: &Draft, body: &Placed, network: &Network) -> Option<f64> {
+    worst(draft, body, network).map(|worst| worst.timestep / worst.share)
+}
+
 fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
+    let Worst { mass, share, timestep, is_linked, met } = worst(draft, body, network)?;
+    let met: Vec<String> = met.iter().map(|(count, crowd)| format!("{count} in crowd `{crowd}`")).collect();
+    let whose = match (is_linked, met.is_empty()) {
+        (_, true) => "of the links".to_owned(),
+        (true, false) => {
+            format!("of the links, and of neighbours as in a dense heap, {},", met.join(" and "))
+        }
+        (false, false) => format!("of neighbours as in a dense heap, {},", met.join(" and ")),
+    };
+    Some(format!(
+        "{}: K + 2Z {whose} at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
+         the network may be unstable; a step of {:.3e} s is safe whatever states they are in, and a longer one may be",
+        draft.place(&body.spec.site),
+        body.spec.name,
+        timestep / share,
+    ))
+}
+
+fn worst<'a>(draft: &'a Draft, body: &Placed, network: &Network) -> Option<Worst<'a>> {
     let system = &draft.systems[body.system];
     if !matches!(system.stepper.stability(), Stability::Limited(_)) {
         return None;
@@ -147,25 +183,12 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
     }
     let (mass, share) = worst.filter(|(_, share)| *share > 1.0)?;
     meet(&crowds, mass, places[mass], &mut company);
-    let met = (0..crowds.len()).filter_map(|crowd| {
-        let count: usize = company.iter().filter(|one| one.crowd == crowd).map(|one| one.count).sum();
-        (count > 0).then(|| format!("{count} in crowd `{}`", crowds[crowd].crowd.name()))
+    let met = crowds.iter().enumerate().map(|(index, peopled)| {
+        let of_crowd = company.iter().filter(|one| one.crowd == index);
+        (of_crowd.map(|one| one.count).sum(), peopled.crowd.name())
     });
-    let met: Vec<String> = met.collect();
-    let whose = match (loads[mass] > 0.0, met.is_empty()) {
-        (_, true) => "of the links".to_owned(),
-        (true, false) => {
-            format!("of the links, and of neighbours as in a dense heap, {},", met.join(" and "))
-        }
-        (false, false) => format!("of neighbours as in a dense heap, {},", met.join(" and ")),
-    };
-    Some(format!(
-        "{}: K + 2Z {whose} at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
-         the network may be unstable; a step of {:.3e} s is safe",
-        draft.place(&body.spec.site),
-        body.spec.name,
-        timestep / share,
-    ))
+    let met = met.filter(|(count, _)| *count > 0).collect();
+    Some(Worst { mass, share, timestep, is_linked: loads[mass] > 0.0, met })
 }
 
 /// What links take of the bound at each mass [N/m].

@@ -5,6 +5,7 @@ use souple_table::Value;
 
 use super::super::Draft;
 use super::crowd_force;
+use super::steps;
 use super::table::StateSpace;
 use crate::spec::network::{Filled, MassGroup, Places};
 use crate::spec::units::from_algorithmic;
@@ -19,6 +20,8 @@ pub struct NetworkInfo {
     pub timestep: f64,
     pub masses: usize,
     pub fixed: usize,
+    /// A step that masses bear whatever their links and crowds come to [s]; none where they bear those that they are taken in.
+    pub safe_step: Option<f64>,
     /// Mass of the lightest that moves [kg]; none where all are fixed.
     pub lightest: Option<f64>,
     pub laws: Vec<LawInfo>,
@@ -161,6 +164,7 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                 timestep,
                 masses: body.mesh.points.len(),
                 fixed: network.of_each(|group| group.is_fixed).filter(|fixed| *fixed).count(),
+                safe_step: steps::safe_step(draft, body, network),
                 lightest: moving.map(|group| group.mass).reduce(f64::min),
                 laws: links.chain(crowds).collect(),
                 fills: network.masses.iter().filter_map(fill).collect(),

@@ -133,10 +133,7 @@ pub fn read(
     let text = text_of(draft, (site, file), "a table, as `souple sweep` writes it")?;
     let read = match NumberTable::read(&text, &["value"]) {
         Ok(read) => read,
-        Err(fault) => {
-            let message = format!("{}: {} is {}", fault.place, fault.subject, fault.found);
-            return refuse(Code::WrongType, message, &fault.expected);
-        }
+        Err(fault) => return refuse(Code::WrongType, fault.what(), &fault.expected),
     };
     let columns: Vec<&str> = (0..read.heads.len()).map(|column| read.name(column)).collect();
     let Some(column) = read.column_of(control, names.len()).filter(|_| columns.starts_with(names)) else {
