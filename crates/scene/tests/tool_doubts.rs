@@ -71,6 +71,17 @@ fn couplings_that_are_too_stiff_are_told() {
 fn bodies_pinned_whole_are_told() {
     let whole = HELD.replace("region = \"x_min\"", "region = { box = [[0, -1, -1], [1000, 100, 100]] }");
     assert_says_alone(&whole, "are pinned along all axes");
+    // of two the pin is named that holds more: line 11, behind one of the end in lines 9 and 10
+    let second =
+        "region = \"x_min\"\n[[bodies.bar.pins]]\nregion = { box = [[0, -1, -1], [1000, 100, 100]] }";
+    let said = warnings(&HELD.replace("region = \"x_min\"", second));
+    assert!(said.len() == 1 && said[0].contains("scene.toml:11"), "{said:?}");
+    // a patch whose ends are all there is of it is driven by them
+    let driven = HELD.replace("cells = [10, 2, 2]", "cells = [1, 2, 2]").replace(
+        "region = \"x_min\"",
+        "region = \"x_min\"\n[[bodies.bar.pins]]\nregion = \"x_max\"\nmotion = { formula = [\"0.1*t\", 0, 0] }",
+    );
+    assert_eq!(warnings(&driven), Vec::<String>::new());
 }
 
 const LAYERED: &str = r#"format = 1
