@@ -62,6 +62,15 @@ fn couplings_that_are_too_stiff_are_told() {
         |stiffness: &str| HELD.replace("stiffness = \"400 N/m\"", &format!("stiffness = \"{stiffness}\""));
     assert_eq!(warnings(&of("20 kN/m")), Vec::<String>::new());
     assert_says_alone(&of("40 kN/m"), "take less than 25000 N/m");
+    // a move of 2 ms in a run of a hundred seconds is between dates that are 50 ms apart; a smooth one is half as fast again halfway
+    for (how, words) in [("", "at 0.5 m/s"), ("interpolation = \"smooth\", ", "at 0.75 m/s")] {
+        let short = format!(
+            "motion = {{ {how}times = [0, 10.01, 10.012], offsets = [[0, 0, 0], [0, 0, 0], [0, -0.001, 0]] }}"
+        );
+        let long = of("20 kN/m")
+            .replace("motion = { times = [0, 0.1], offsets = [[0, 0, 0], [0, -0.02, 0]] }", &short);
+        assert_says_alone(&format!("{long}[run]\nduration = \"100 s\"\n"), words);
+    }
     let said = warnings(&of("2 MN/m"));
     assert!(said.iter().any(|told| told.contains("too stiff for an arm of 0.4 kg")), "{said:?}");
 }
