@@ -325,6 +325,35 @@ fn windows_of_an_odd_length_overlap_by_half_rounded_down() {
     assert_eq!(with("{ length = 0.02 }"), with("{ length = 0.02, overlap = 0 }"));
 }
 
+/// Commands to begin with are those of a file whose last row goes on, where no window has others sought; a row of another date is named.
+#[test]
+fn starts_of_a_file_are_rows_of_periods() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plans").join("start");
+    let with = |rows: &[(f64, f64)]| {
+        std::fs::create_dir_all(&folder).unwrap();
+        let rows: String = rows.iter().map(|(date, command)| format!("{date},7,{command}\n")).collect();
+        let text = format!("time [s],cart.other [N],cart.drive [N]\n{rows}");
+        std::fs::write(folder.join("begin.csv"), text).unwrap();
+        let kind = "start = \"begin.csv\"\nwindows = [{ from = 0, until = 0.5 }]\nkind = ";
+        // a quarter of the time takes more than the motor gives
+        plan_of_changed("start", &[("largest = \"5 N\"\n", "")], &[("kind = ", kind)], 1)
+    };
+    let mut rows: Vec<(f64, f64)> =
+        (0..30).map(|row| (0.02 * f64::from(row), 0.01 * f64::from(row))).collect();
+    let found = with(&rows).unwrap();
+    for (n, command) in found.commands[0].1.iter().enumerate().skip(25) {
+        assert_eq!(*command, rows[n.min(29)].1, "{n}");
+    }
+    rows.remove(20);
+    let message = with(&rows).unwrap_err().to_string();
+    assert!(message.contains("begin.csv") && message.contains("line 22 is of 0.42 s"), "{message}");
+    assert!(message.contains("0.4 s: a row for each period of 0.02 s"), "{message}");
+    let message = with(&[(0.02, 1.0)]).unwrap_err().to_string();
+    assert!(message.contains("line 2 is of 0.02 s"), "{message}");
+    let message = with(&[]).unwrap_err().to_string();
+    assert!(message.contains("it has no rows"), "{message}");
+}
+
 /// A gate that is shut from 0.15 m to 0.75 m halfway is passed early or late: `|x − 0.45| ≥ 0.3` at `T/2`, on either side of which the least
 /// effort has a cost of its own, `Σ u² = yᵀ (G Gᵀ)⁻¹ y`. The motion at rest is before it, and so one start comes to the dearer.
 #[test]
