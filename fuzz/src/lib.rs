@@ -7,7 +7,8 @@ use std::path::Path;
 use souple_formal::law::EnergyLaw;
 use souple_formal::tape::{Part, Tape};
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
-use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes, read_series_bytes};
+use souple_io::{FORMATS, NumberTable, Output, read_dataset_bytes, read_particle_bytes, read_series_bytes};
+use souple_scene::PlanFile;
 use souple_sweep::Study;
 
 /// Reads a content; what is read must refer to points that exist, validate without a panic, and come back the
@@ -75,6 +76,36 @@ pub fn read_study(content: &[u8]) {
     let Ok(study) = Study::parse(Path::new("fuzzed.toml"), study, |_| Ok(table.to_owned())) else { return };
     let count = study.paths().count();
     assert!(study.runs.iter().all(|run| run.values.len() == count));
+}
+
+/// Reads a content as a table of numbers and as a plan of steps of 10 ms: each row has a number for each head, columns are found by their
+/// names, and so are commands.
+pub fn read_table(content: &[u8]) {
+    let Ok(text) = std::str::from_utf8(content) else { return };
+    match NumberTable::read(text, &["value"]) {
+        Err(fault) => assert!(!fault.to_string().is_empty()),
+        Ok(table) => {
+            let columns = 0..table.heads.len();
+            assert!(!columns.is_empty());
+            for column in columns {
+                let (name, found) = (table.name(column), table.column_of(table.name(column), 0));
+                assert!(found.is_some_and(|first| first <= column && table.name(first) == name));
+                let _ = table.unit(column);
+            }
+            let is_row = |numbers: &Vec<f64>| {
+                let may_be = |(column, number): (usize, &f64)| {
+                    number.is_finite() || (table.name(column) == "value" && number.is_infinite())
+                };
+                numbers.len() == table.heads.len() && numbers.iter().enumerate().all(may_be)
+            };
+            assert!(table.rows.iter().all(|(line, numbers)| *line > 1 && is_row(numbers)));
+        }
+    }
+    let Ok(plan) = PlanFile::read(text, 0.01) else { return };
+    for (_, name) in plan.names() {
+        let Ok(column) = plan.column_of_commands(name) else { continue };
+        assert!(plan.column(column).count() > 0 && plan.column(column).all(f64::is_finite));
+    }
 }
 
 /// Reads a content as a table of particles and dresses them, where they are few.

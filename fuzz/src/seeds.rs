@@ -45,6 +45,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::write(studies.join("vary"), vary)?;
     let table = "scene = \"x.toml\"\ntable = \"runs.csv\"\n--- table\na.b,c\n1,\"[1, 2]\"\n5 kPa,tet4\n";
     std::fs::write(studies.join("table"), table)?;
+    let tables = Path::new(&folder).join("table");
+    std::fs::create_dir_all(&tables)?;
+    std::fs::write(tables.join("plan"), "time [s],n.drive [N],\"a, b\" [m]\n0,1,2\n0.01,-3,4e-5\n")?;
+    std::fs::write(tables.join("value"), "x [m],value\n0,inf\n\n1,2.5\n")?;
     write_formulas(&Path::new(&folder).join("formula"))?;
     let laws = Path::new(&folder).join("law");
     std::fs::create_dir_all(&laws)?;

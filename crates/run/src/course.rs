@@ -123,7 +123,9 @@ impl Course {
                 }
             }
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+            let clock = Instant::now();
             folds.look(Look::Glance, &session.world, &session.bodies);
+            session.around.inside_out += clock.elapsed().as_secs_f64();
             // told when what there is has been written
             let watched = session.watch_energy();
             let last = step == steps;
@@ -194,8 +196,10 @@ impl Course {
             sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
         session.warnings.extend(doubts::of_traces(traces));
+        let clock = Instant::now();
         folds.look(Look::Close, &session.world, &session.bodies);
-        let folds = std::mem::take(folds).into_found();
+        session.around.inside_out += clock.elapsed().as_secs_f64();
+        let folds = folds.take_found();
         session.warnings.extend(folds.iter().map(Fold::message));
         if session.solver.shortened > 0 {
             session.warnings.push(format!(

@@ -1,13 +1,22 @@
 //! Watches for matter that is turned inside out along a run: what a press folds and its release mends is not seen at the end.
+//!
+//! A body is looked at as often as is cheap beside its steps, at dates that no clock and no thread has a say in: after each period where an
+//! implicit stepper solves for its points, else after so many periods as evaluate its forces [`EVALUATIONS`] times.
+
+use std::ops::Range;
 
 use serde_json::{Map, Value, json};
 use souple_engine::World;
-use souple_math::{Mat3, Vec3};
-use souple_mesh::{Cell, ElementKind, Mesh};
+use souple_engine::steppers::Stability;
+use souple_mesh::SignedVolume;
 use souple_scene::BodyInfo;
-use souple_table::{counted, four_digits};
+use souple_table::four_digits;
 
-/// Cells of a body that were inside out where a period ended.
+/// Evaluations of forces between two glances at a body that nothing is solved for: one takes an eighth of an evaluation of the cheapest law
+/// at linear tetrahedra, and a tenth at hexahedra.
+const EVALUATIONS: f64 = 16.0;
+
+/// Cells of a body that were inside out when it was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fold {
     pub body: String,
@@ -17,7 +26,7 @@ pub struct Fold {
     pub time: f64,
     /// The first of these.
     pub first_cell: usize,
-    /// When there were any, first and last [s].
+    /// When any were found, first and last [s].
     pub from: f64,
     pub until: f64,
     /// Where the run ends.
@@ -27,84 +36,177 @@ pub struct Fold {
 /// How closely bodies are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Look {
-    /// By the volumes between the nodes of cells that fill space: at little cost.
+    /// Where it is due, at cells whose volume between their nodes is none.
     Glance,
-    /// All cells, by the points at which they are strained.
+    /// All cells of all bodies, by the points at which they are strained.
     Close,
 }
 
 /// What of the bodies of a world has been folded so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Folds {
+    /// Of each body.
+    watches: Vec<Watch>,
     found: Vec<Fold>,
 }
 
+/// How a body is looked at.
+#[derive(Clone, Debug)]
+struct Watch {
+    /// Periods from glance to glance.
+    every: u64,
+    /// Of each block of its mesh; `None` where cells fill no space, and cannot be inside out.
+    volumes: Vec<Option<SignedVolume>>,
+}
+
 impl Folds {
-    /// Looks at all bodies after a period.
+    pub fn new(world: &World, bodies: &[BodyInfo]) -> Self {
+        Self { watches: bodies.iter().map(|body| Watch::new(world, body)).collect(), found: Vec::new() }
+    }
+
+    /// Looks at the bodies after a period.
     pub fn look(&mut self, look: Look, world: &World, bodies: &[BodyInfo]) {
-        self.found.iter_mut().for_each(|fold| fold.at_end = 0);
-        for body in bodies {
-            let out = inside_out(look, world, body);
-            let Some(first_cell) = out.first().copied() else { continue };
-            let (count, time) = (out.len(), world.time());
-            let known = self.found.iter().position(|fold| fold.body == body.name);
-            let place = known.unwrap_or_else(|| {
+        let Self { watches, found } = self;
+        let date = world.state().period;
+        for (body, watch) in bodies.iter().zip(watches) {
+            if look == Look::Glance && !date.is_multiple_of(watch.every) {
+                continue;
+            }
+            let out = watch.inside_out(look, world, body);
+            let (time, at_end) = (world.time(), if look == Look::Close { out.count } else { 0 });
+            let Some(first_cell) = out.first else { continue };
+            let place = found.iter().position(|fold| fold.body == body.name).unwrap_or_else(|| {
                 let (body, of) = (body.name.clone(), body.mesh.cell_count());
-                self.found.push(Fold {
-                    body,
-                    most: 0,
-                    of,
-                    time,
-                    first_cell,
-                    from: time,
-                    until: time,
-                    at_end: 0,
-                });
-                self.found.len() - 1
+                let (from, until) = (time, time);
+                found.push(Fold { body, most: 0, of, time, first_cell, from, until, at_end });
+                found.len() - 1
             });
-            let fold = &mut self.found[place];
-            (fold.until, fold.at_end) = (time, count);
-            if count > fold.most {
-                (fold.most, fold.time, fold.first_cell) = (count, time, first_cell);
+            let fold = &mut found[place];
+            (fold.until, fold.at_end) = (time, at_end);
+            if out.count > fold.most {
+                (fold.most, fold.time, fold.first_cell) = (out.count, time, first_cell);
             }
         }
     }
 
-    pub fn into_found(self) -> Vec<Fold> {
-        self.found
+    pub fn take_found(&mut self) -> Vec<Fold> {
+        std::mem::take(&mut self.found)
+    }
+}
+
+impl Watch {
+    fn new(world: &World, body: &BodyInfo) -> Self {
+        let volumes = body.mesh.blocks.iter().map(|block| SignedVolume::of(block.kind));
+        Self { every: periods_between(world, body), volumes: volumes.collect() }
+    }
+
+    /// The cells of a body that are inside out now.
+    fn inside_out(&self, look: Look, world: &World, body: &BodyInfo) -> Turned {
+        let Some((solid, at)) = world.force_named(body.system, &body.force) else {
+            return Turned::default();
+        };
+        let (positions, time) = (&world.rows(body.system).positions[body.rows.clone()], world.time());
+        // matter that frames carry may fold where no strain is taken: of such the cell is looked at that is drawn
+        let is_strained = body.frames.is_none();
+        let is_out = |cell: usize| {
+            // what is cut is no matter any more
+            body.is_whole(cell, time)
+                && (!is_strained
+                    || solid
+                        .cell_field_at(cell, &at)
+                        .is_some_and(|field| field.volume > 0.0 && field.current_volume <= 0.0))
+        };
+        if look == Look::Close && is_strained {
+            return Turned::among(0..body.mesh.cell_count(), &is_out);
+        }
+        let (mut out, mut start) = (Turned::default(), 0);
+        for (block, volume) in body.mesh.blocks.iter().zip(&self.volumes) {
+            let cells = start..start + block.len();
+            if let Some(volume) = volume {
+                let size = block.kind.node_count();
+                let nodes = |cell: usize| &block.nodes[size * (cell - start)..][..size];
+                let here = Turned::among(cells.clone(), &|cell| {
+                    volume.at(nodes(cell), positions) <= 0.0 && is_out(cell)
+                });
+                out = out.and(here);
+            }
+            start = cells.end;
+        }
+        out
+    }
+}
+
+/// Periods from glance to glance at a body.
+fn periods_between(world: &World, body: &BodyInfo) -> u64 {
+    let model = world.model();
+    let stepper = &model.systems[body.system].stepper;
+    let has_points = body.frames.is_none() && body.reduced.is_none();
+    if has_points && stepper.stability() == Stability::Unconditional {
+        return 1;
+    }
+    let evaluations = model.period / stepper.interval(model.timestep(body.system));
+    (EVALUATIONS / evaluations.round()).ceil().max(1.0) as u64
+}
+
+/// Cells that are inside out: how many, and the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Turned {
+    count: usize,
+    first: Option<usize>,
+}
+
+/// Fewer cells are not shared among threads (some tens of microseconds).
+const SHARED: usize = 2048;
+
+impl Turned {
+    fn among(cells: Range<usize>, is_out: &(impl Fn(usize) -> bool + Sync)) -> Self {
+        if cells.len() >= SHARED && rayon::current_num_threads() > 1 {
+            let middle = cells.start + cells.len() / 2;
+            let (head, tail) = rayon::join(
+                || Self::among(cells.start..middle, is_out),
+                || Self::among(middle..cells.end, is_out),
+            );
+            return head.and(tail);
+        }
+        let out = cells.filter(|cell| is_out(*cell));
+        out.fold(Self::default(), |known, cell| known.and(Self { count: 1, first: Some(cell) }))
+    }
+
+    /// With cells that come later.
+    fn and(self, later: Self) -> Self {
+        Self { count: self.count + later.count, first: self.first.or(later.first) }
     }
 }
 
 impl Fold {
     pub fn message(&self) -> String {
         let Self { body, most, of, time, first_cell, from, until, at_end } = self;
-        let cells = counted(*most as u64, "cell");
-        let of_body = format!("of {of} of body `{body}`");
-        let are = |count: usize| if count == 1 { "is" } else { "are" };
+        let cells = |count: &usize| format!("{count} of {of} cells of body `{body}`");
+        let are = |count: &usize| if *count == 1 { "is" } else { "are" };
         let were = if *most == 1 { "was" } else { "were" };
-        let time = four_digits(*time);
+        let [time, from, until] = [*time, *from, *until].map(four_digits);
         let what = match at_end {
-            0 if from == until => format!(
-                "{cells} {of_body} {were} inside out at {time} s, and at no other time: the first cell {first_cell}"
-            ),
+            0 if from == until => {
+                format!("{} {were} found inside out at {time} s, and none at the end", cells(most))
+            }
             0 => format!(
-                "{cells} {of_body} {were} inside out at {time} s, the most of a run in which some were from {} s to {} s: the first cell {first_cell}",
-                four_digits(*from),
-                four_digits(*until)
+                "{} {were} found inside out at {time} s, the most of what was found from {from} s to {until} s, and none at the end",
+                cells(most)
             ),
             count if count == most => format!(
-                "{cells} {of_body} {} inside out at the end, as many as ever, some since {} s: the first cell {first_cell}",
-                are(*count),
-                four_digits(*from)
+                "{} {} inside out at the end, the most that were found; any were first found at {from} s",
+                cells(count),
+                are(count)
             ),
             count => format!(
-                "{count} {of_body} {} inside out at the end, and {most} at {time} s, the most of the run: the first cell {first_cell}",
-                are(*count)
+                "{} {} inside out at the end, and {most} {were} at {time} s, the most that were found",
+                cells(count),
+                are(count)
             ),
         };
         format!(
-            "{what}; no matter does that, and what is read off the body there is not to be trusted: take shorter steps, smaller loads, a finer mesh, \
-             or a law that resists it"
+            "{what}; the first of the most is cell {first_cell}; no matter does that, and what is read off the body there is not to be trusted: take shorter steps, \
+             smaller loads, a finer mesh, or a law that resists it"
         )
     }
 }
@@ -125,53 +227,11 @@ pub fn to_json(folds: &[Fold]) -> Map<String, Value> {
     folds.iter().map(told).collect()
 }
 
-/// The cells of a body that are inside out now, ascending.
-fn inside_out(look: Look, world: &World, body: &BodyInfo) -> Vec<usize> {
-    let Some((solid, at)) = world.force_named(body.system, &body.force) else { return Vec::new() };
-    let positions = &world.rows(body.system).positions[body.rows.clone()];
-    // what is cut is no matter any more
-    let is_whole = |cell: &usize| body.is_whole(*cell, world.time());
-    let mut out = match look {
-        Look::Close if body.frames.is_none() => (0..body.mesh.cell_count()).collect(),
-        _ => turned(&body.mesh, positions),
-    };
-    out.retain(is_whole);
-    // matter that frames carry may fold where no strain is taken: of such the cell is looked at that is drawn
-    if body.frames.is_none() {
-        out.retain(|cell| {
-            solid
-                .cell_field_at(*cell, &at)
-                .is_some_and(|field| field.volume > 0.0 && field.current_volume <= 0.0)
-        });
-    }
-    out
-}
-
-/// Cells without a volume of their own where a mesh stands, ascending.
-fn turned(mesh: &Mesh, positions: &[Vec3]) -> Vec<usize> {
-    let is_linear = mesh.blocks.iter().all(|block| block.kind == ElementKind::Tet4);
-    if is_linear {
-        let is_turned = |cell: &Cell<'_>| {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|node: usize| positions[cell.nodes[node] as usize]);
-            Mat3::from_columns(b - a, c - a, d - a).determinant() <= 0.0
-        };
-        let cells = mesh.cells().enumerate();
-        return cells.filter(|(_, cell)| is_turned(cell)).map(|(number, _)| number).collect();
-    }
-    // only matter that fills space can be inside out
-    if mesh.dimension() < 3 {
-        return Vec::new();
-    }
-    let standing = Mesh { points: positions.to_vec(), ..Mesh::clone(mesh) };
-    let volumes = standing.cell_volumes().into_iter().enumerate();
-    volumes.filter(|(_, volume)| *volume <= 0.0).map(|(number, _)| number).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The words tell the worst, and whether it is still so.
+    /// The words tell the worst that was found, and whether it is still so.
     #[test]
     fn the_worst_is_told() {
         let fold = Fold {
@@ -184,25 +244,38 @@ mod tests {
             until: 0.8,
             at_end: 0,
         };
-        let said = fold.message();
-        assert!(said.starts_with("3 cells of 900 of body `liver` were inside out at 0.7 s"), "{said}");
-        assert!(said.contains("from 0.6 s to 0.8 s"), "{said}");
-        let said = Fold { at_end: 3, ..fold.clone() }.message();
-        assert!(said.contains("inside out at the end, as many as ever"), "{said}");
-        let said = Fold { at_end: 1, ..fold }.message();
-        assert!(
-            said.starts_with("1 of 900 of body `liver` is inside out at the end, and 3 at 0.7 s"),
-            "{said}"
+        let starts = |fold: Fold, words: &str| {
+            let said = fold.message();
+            assert!(said.starts_with(words) && said.contains("cell 12"), "{said}");
+        };
+        starts(
+            fold.clone(),
+            "3 of 900 cells of body `liver` were found inside out at 0.7 s, the most of what was found from 0.6 s to 0.8 s, and none at the end",
+        );
+        starts(
+            Fold { most: 1, from: 0.7, until: 0.7, ..fold.clone() },
+            "1 of 900 cells of body `liver` was found inside out at 0.7 s, and none at the end",
+        );
+        starts(
+            Fold { at_end: 3, ..fold.clone() },
+            "3 of 900 cells of body `liver` are inside out at the end, the most that were found; any were first found at 0.6 s",
+        );
+        starts(
+            Fold { at_end: 1, ..fold },
+            "1 of 900 cells of body `liver` is inside out at the end, and 3 were at 0.7 s, the most that were found",
         );
     }
 
-    /// A tetrahedron whose tip goes through its base.
+    /// Threads count and order as one does.
     #[test]
-    fn what_is_turned_is_found() {
-        let mut mesh = Mesh { points: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z], ..Mesh::default() };
-        mesh.blocks.push(souple_mesh::CellBlock { kind: ElementKind::Tet4, nodes: vec![0, 1, 2, 3] });
-        assert!(turned(&mesh, &mesh.points).is_empty());
-        let through = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z * -0.1];
-        assert_eq!(turned(&mesh, &through), [0]);
+    fn threads_find_the_same_cells() {
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let among = |first: usize| Turned::among(first..9 * SHARED, &|cell| cell % 1000 == 999);
+            let [all, later] = [0, 5000].map(|first| pool.install(|| among(first)));
+            assert_eq!(all, Turned { count: 9 * SHARED / 1000, first: Some(999) });
+            assert_eq!(later, Turned { count: 9 * SHARED / 1000 - 5, first: Some(5999) });
+            assert_eq!(pool.install(|| Turned::among(0..999, &|cell| cell % 1000 == 999)), Turned::default());
+        }
     }
 }

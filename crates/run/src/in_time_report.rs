@@ -193,3 +193,32 @@ fn periods_plot(periods: &Histogram) -> Plot {
         ..Plot::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of ten ticks three are at the limit, one of them up to rounding, and four without a device, the first at 6 ms.
+    #[test]
+    fn limits_and_losses_are_shares_of_ticks() {
+        let tick = |number: u32| Tick {
+            time: 1e-3 * f64::from(number),
+            force: Vec3::new(
+                0.0,
+                [0.5, 1.0, 2.0, 2.0, 2.0 * (1.0 - 1e-12), 1.99][number.min(5) as usize],
+                0.0,
+            ),
+            is_lost: number >= 6,
+            ..Tick::default()
+        };
+        let ticks: Vec<Tick> = (0..10).map(tick).collect();
+        let told = of_hand(&ticks, 2.0, 0.0, 0, &Ages::default());
+        assert_eq!((told["limit_n"].as_f64(), told["greatest_force_n"].as_f64()), (Some(2.0), Some(2.0)));
+        assert_eq!((told["share_at_limit"].as_f64(), told["share_lost"].as_f64()), (Some(0.3), Some(0.4)));
+        assert_eq!(told["first_lost_seconds"].as_f64(), Some(6e-3));
+        let told = of_hand(&ticks[..6], 20.0, 0.0, 0, &Ages::default());
+        assert_eq!((told["share_at_limit"].as_f64(), told["share_lost"].as_f64()), (Some(0.0), Some(0.0)));
+        assert!(told["first_lost_seconds"].is_null());
+        assert_eq!(of_hand(&[], 2.0, 0.0, 0, &Ages::default())["share_lost"].as_f64(), Some(0.0));
+    }
+}

@@ -193,8 +193,8 @@ pub fn run(
     let folder = output_folder(options, &session, &aims.sounds, first_step)?;
     let traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     let frames = frames::Frames::open(folder.as_ref(), &session, frame_count, steps)?;
-    Ok(course::Course { session, folder, frames, traces, folds: folds::Folds::default() }
-        .run(steps, options, &aims, watch))
+    let folds = folds::Folds::new(&session.world, &session.bodies);
+    Ok(course::Course { session, folder, frames, traces, folds }.run(steps, options, &aims, watch))
 }
 
 fn snapshot_name(period: u64) -> String {

@@ -87,6 +87,8 @@ pub struct Report {
 pub struct AroundSteps {
     /// Probes.
     pub measure: f64,
+    /// The look for matter that is inside out.
+    pub inside_out: f64,
     /// Hashes, frames and snapshots along the way.
     pub write: f64,
 }
@@ -135,6 +137,7 @@ impl Report {
                 "advance": 1e3 * advance,
                 "fields": 1e3 * fields,
                 "measure": 1e3 * self.around.measure,
+                "inside_out": 1e3 * self.around.inside_out,
                 "write": 1e3 * self.around.write,
             },
             "derivatives_ms": 1e3 * self.stages.derivatives(),

@@ -85,26 +85,15 @@ impl Trace {
         let first = early.min(self.times.len().saturating_sub(1));
         let counted =
             || self.times[first..].iter().zip(self.values[first * self.components..].chunks(self.components));
-        // a value that is not a number is not passed over
-        let keep = |best: (f64, f64), (value, time): (f64, f64), is_better: fn(f64, f64) -> bool| {
-            if !best.0.is_nan() && (value.is_nan() || is_better(value, best.0)) {
-                (value, time)
-            } else {
-                best
-            }
+        let pick = |is_better: fn(f64, f64) -> bool| -> (Vec<f64>, Vec<f64>) {
+            let of = |c: usize| best(counted().map(|(time, values)| (values[c], *time)), is_better);
+            // of no value there is none
+            (0..self.components).filter_map(of).unzip()
         };
-        let pick = |is_better: fn(f64, f64) -> bool, start: f64| -> (Vec<f64>, Vec<f64>) {
-            let of = |c: usize| {
-                let values = counted().map(|(time, values)| (values[c], *time));
-                values.fold((start, 0.0), |best, value| keep(best, value, is_better))
-            };
-            (0..self.components).map(of).unzip()
-        };
-        let (min, min_at) = pick(|a, b| a < b, f64::INFINITY);
-        let (max, max_at) = pick(|a, b| a > b, f64::NEG_INFINITY);
+        let (min, min_at) = pick(|a, b| a < b);
+        let (max, max_at) = pick(|a, b| a > b);
         let length = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>().sqrt();
-        let lengths = counted().map(|(time, values)| (length(values), *time));
-        let longest = lengths.fold((0.0, 0.0), |best, value| keep(best, value, |a, b| a > b));
+        let longest = best(counted().map(|(time, values)| (length(values), *time)), |a, b| a > b);
         Summary {
             name: self.name.clone(),
             unit: self.unit,
@@ -114,7 +103,7 @@ impl Trace {
             max,
             min_at,
             max_at,
-            longest: (self.components > 1).then_some(longest),
+            longest: longest.filter(|_| self.components > 1),
             frequency: self.frequencies(),
         }
     }
@@ -130,6 +119,18 @@ impl Trace {
         };
         (0..self.components).map(of).collect()
     }
+}
+
+/// The best of values with their times, and when it was met first. A value that is not a number is not passed over.
+fn best(
+    mut values: impl Iterator<Item = (f64, f64)>,
+    is_better: impl Fn(f64, f64) -> bool,
+) -> Option<(f64, f64)> {
+    let first = values.next()?;
+    Some(values.fold(first, |best, (value, time)| {
+        let is_kept = best.0.is_nan() || !(value.is_nan() || is_better(value, best.0));
+        if is_kept { best } else { (value, time) }
+    }))
 }
 
 /// All traces as one table: a column of times, then one or three for each probe, named with units.
@@ -148,4 +149,46 @@ pub fn write_csv(path: &Path, traces: &[Trace]) -> Result<(), IoError> {
         }
     }
     souple_io::write_csv(path, &columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trace(components: usize, since: f64, values: &[f64]) -> Trace {
+        let count = values.len() / components;
+        Trace {
+            name: "tip".to_owned(),
+            unit: "m",
+            quantity: "position",
+            over: None,
+            components,
+            since,
+            times: (0..count).map(|step| 0.5 * step as f64).collect(),
+            values: values.to_vec(),
+        }
+    }
+
+    /// Extremes have the date at which they were met first, also where no value is beyond the first of those that count, is no number, or
+    /// has no end.
+    #[test]
+    fn extremes_have_their_dates() {
+        let [inf, nan] = [f64::INFINITY, f64::NAN];
+        for (values, since, min, max) in [
+            (&[2.0, 1.0, 3.0, 1.0, 3.0][..], 0.0, (1.0, 0.5), (3.0, 1.0)),
+            (&[0.0, 2.0, 2.0, 2.0], 0.5, (2.0, 0.5), (2.0, 0.5)),
+            (&[0.0, inf, inf], 0.5, (inf, 0.5), (inf, 0.5)),
+            (&[0.0, -inf, -inf], 1.0, (-inf, 1.0), (-inf, 1.0)),
+        ] {
+            let told = trace(1, since, values).summary();
+            assert_eq!((told.min[0], told.min_at[0]), min, "{values:?}");
+            assert_eq!((told.max[0], told.max_at[0]), max, "{values:?}");
+            assert_eq!(told.longest, None);
+        }
+        let told = trace(1, 0.0, &[1.0, nan, 2.0]).summary();
+        assert!(told.min[0].is_nan() && told.max[0].is_nan());
+        assert_eq!((told.min_at[0], told.max_at[0]), (0.5, 0.5));
+        let told = trace(3, 0.5, &[9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).summary();
+        assert_eq!((told.longest, told.min_at), (Some((0.0, 0.5)), vec![0.5; 3]));
+    }
 }

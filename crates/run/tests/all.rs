@@ -5,6 +5,7 @@ mod adapting;
 mod crowds;
 mod cut_open;
 mod cut_touch;
+mod folds;
 mod hands;
 mod kneaded;
 mod levels_resume;

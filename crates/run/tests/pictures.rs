@@ -5,7 +5,7 @@ use std::sync::Arc;
 use souple_io::Field;
 use souple_io::picture::{ColourMap, Paint, Picture, Stroke, StrokeShape};
 use souple_math::Vec3;
-use souple_mesh::Mesh;
+use souple_mesh::{ElementKind, Mesh};
 use souple_run::show::{Arrows, BodyMoment, Figure, GAP, Moment, Show, Stage, map_of};
 use souple_table::{Value, Values};
 
@@ -69,6 +69,34 @@ fn kinds_of_elements_have_colours() {
     let corner = Vec3::new(0.125, 0.125, 0.125);
     assert!(shrunk.surfaces[0].points.iter().any(|point| (*point - corner).length() < 1e-12));
     shrunk.render().unwrap();
+}
+
+/// A dress of triangles is no part of its body's mesh: where kinds of elements are asked for the body is seen, without it, and its cells alone
+/// are counted; where the dress has the field the body is hidden, and neither is where nothing is asked for.
+#[test]
+fn dresses_are_hidden_where_elements_are_seen() {
+    let mut show = show(Vec3::ZERO);
+    let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let tissue = Field::new("tissue", 1, vec![0.0; 3]);
+    let dress = BodyMoment {
+        name: "bar.skin".to_owned(),
+        positions: corners.clone(),
+        mesh: Arc::new(Mesh::new(corners, ElementKind::Tri3, vec![0, 1, 2])),
+        point_fields: vec![tissue],
+        cell_fields: Vec::new(),
+        frames: Vec::new(),
+    };
+    show.moments[0].bodies.push(dress);
+    let moment = &show.moments[0];
+    let hidden =
+        |figure: &Figure| moment.bodies.iter().map(|body| figure.hides(moment, body)).collect::<Vec<_>>();
+    assert_eq!(hidden(&coloured_by("element")), [false, true]);
+    assert_eq!(hidden(&coloured_by("tissue")), [true, false]);
+    assert_eq!(hidden(&coloured_by("adaptation")), [false, true]);
+    assert_eq!(hidden(&Figure { colour_by: None, ..Figure::default() }), [false, false]);
+    let picture = coloured_by("element").picture(&show, moment).unwrap();
+    let names = &picture.legend.as_ref().unwrap().names;
+    assert_eq!(names, &[(0.0, "6 tet".to_owned()), (1.0, "1 hex".to_owned())]);
 }
 
 /// The gap is where one run stands less where another does; a run of other bodies has none.

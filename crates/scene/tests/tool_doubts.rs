@@ -62,6 +62,15 @@ fn couplings_that_are_too_stiff_are_told() {
         |stiffness: &str| HELD.replace("stiffness = \"400 N/m\"", &format!("stiffness = \"{stiffness}\""));
     assert_eq!(warnings(&of("20 kN/m")), Vec::<String>::new());
     assert_says_alone(&of("40 kN/m"), "take less than 25000 N/m");
+    // a move of 2 ms in a run of a hundred seconds is between dates that are 50 ms apart; a smooth one is half as fast again halfway
+    for (how, words) in [("", "at 0.5 m/s"), ("interpolation = \"smooth\", ", "at 0.75 m/s")] {
+        let short = format!(
+            "motion = {{ {how}times = [0, 10.01, 10.012], offsets = [[0, 0, 0], [0, 0, 0], [0, -0.001, 0]] }}"
+        );
+        let long = of("20 kN/m")
+            .replace("motion = { times = [0, 0.1], offsets = [[0, 0, 0], [0, -0.02, 0]] }", &short);
+        assert_says_alone(&format!("{long}[run]\nduration = \"100 s\"\n"), words);
+    }
     let said = warnings(&of("2 MN/m"));
     assert!(said.iter().any(|told| told.contains("too stiff for an arm of 0.4 kg")), "{said:?}");
 }
@@ -71,6 +80,17 @@ fn couplings_that_are_too_stiff_are_told() {
 fn bodies_pinned_whole_are_told() {
     let whole = HELD.replace("region = \"x_min\"", "region = { box = [[0, -1, -1], [1000, 100, 100]] }");
     assert_says_alone(&whole, "are pinned along all axes");
+    // of two the pin is named that holds more: line 11, behind one of the end in lines 9 and 10
+    let second =
+        "region = \"x_min\"\n[[bodies.bar.pins]]\nregion = { box = [[0, -1, -1], [1000, 100, 100]] }";
+    let said = warnings(&HELD.replace("region = \"x_min\"", second));
+    assert!(said.len() == 1 && said[0].contains("scene.toml:11"), "{said:?}");
+    // a patch whose ends are all there is of it is driven by them
+    let driven = HELD.replace("cells = [10, 2, 2]", "cells = [1, 2, 2]").replace(
+        "region = \"x_min\"",
+        "region = \"x_min\"\n[[bodies.bar.pins]]\nregion = \"x_max\"\nmotion = { formula = [\"0.1*t\", 0, 0] }",
+    );
+    assert_eq!(warnings(&driven), Vec::<String>::new());
 }
 
 const LAYERED: &str = r#"format = 1

@@ -243,3 +243,45 @@ fn empty_cuts_are_said() {
     );
     assert!(!cut("1,0,0,0.5").stderr.contains("leaves nothing"));
 }
+
+/// How often a hand's force was at its limit, and its device lost, is told where it was, in words and numbers.
+#[test]
+fn hands_at_their_limit_and_lost_devices_are_told() {
+    let pressed = r#"format = 1
+[world]
+period = "5 ms"
+[systems.main]
+stepper = "backward_euler"
+[bodies.bar]
+mesh = { generate = "bar", size = [1, 0.1, 0.1], cells = [4, 1, 1], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "10 kPa", poissons_ratio = 0.3, density = 1000 }
+[[bodies.bar.pins]]
+region = "x_min"
+[hands.right]
+device = { name = "emulated", mass = "0.4 kg", lost_at = "0.2 s" }
+tool = { name = "sphere", centre = [0.5, 0.13, 0.05], radius = 0.02 }
+body = "bar"
+touch = { detect = "triangles" }
+coupling = { stiffness = "400 N/m", damping = 2, limit = "0.25 N" }
+motion = { times = [0, 0.05], offsets = [[0, 0, 0], [0, -0.05, 0]] }
+[run]
+duration = "0.4 s"
+"#;
+    let folder = Folder::new("lost");
+    let scene = folder.write("pressed.toml", pressed);
+    let told = souple(["haptics", &scene]).ends(0).stdout;
+    assert!(told.contains("hand right: its force was at the limit of 0.25 N in "), "{told}");
+    assert!(told.contains("hand right: its device was lost in ") && told.contains("first at 0.2"), "{told}");
+    let report = souple(["haptics", &scene, "--json", "--quiet"]).ends(0).json();
+    let hand = &report["hands"]["right"];
+    let number = |key: &str| hand[key].as_f64().unwrap_or_else(|| panic!("{key} of {hand:#}"));
+    assert_eq!(number("limit_n"), 0.25);
+    // it is pushed against the bar for a part of the half of the time in which it is there
+    assert!(number("share_at_limit") > 0.01 && number("share_at_limit") < 0.6, "{hand:#}");
+    assert!(number("share_lost") > 0.2 && number("share_lost") < 0.6, "{hand:#}");
+    assert!(number("first_lost_seconds") >= 0.199, "{hand:#}");
+    let held =
+        folder.write("held.toml", pressed.replace(", lost_at = \"0.2 s\"", "").replace("0.25 N", "50 N"));
+    let told = souple(["haptics", &held, "--duration", "0.1 s"]).ends(0).stdout;
+    assert!(!told.contains("at the limit") && !told.contains("was lost"), "{told}");
+}

@@ -1,4 +1,4 @@
-//! The functions of the fuzz targets of skins and of kept tapes, which the nightly compiler runs for hours, on a few hundred mutated contents.
+//! The functions of the fuzz targets of skins, of tables of numbers and of kept tapes, which the nightly compiler runs for hours, on a few hundred mutated contents.
 
 #[path = "../../../fuzz/src/lib.rs"]
 #[expect(dead_code, reason = "the readers of meshes, scenes and studies have tests of their own")]
@@ -27,6 +27,19 @@ fn mutated_particles_are_dressed_or_refused() {
     repeat(600, |seed| {
         let content = Mutator::new(seed ^ (1 << 42), words()).mutated(&seeds);
         guard(seed, &content, 20.0, || targets::dress_particles(&content));
+    });
+}
+
+/// Tables of numbers and plans are read whole, or refused.
+#[test]
+fn mutated_tables_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> =
+        ["time [s],n.drive [N],\"a, b\" [m]\n0,1,2\n0.01,-3,4e-5\n", "x [m],value\n0,inf\n\n1,2.5\n"]
+            .map(|text| text.as_bytes().to_vec())
+            .into();
+    repeat(4000, |seed| {
+        let content = Mutator::new(seed ^ (1 << 45), words()).mutated(&seeds);
+        guard(seed, &content, 20.0, || targets::read_table(&content));
     });
 }
 

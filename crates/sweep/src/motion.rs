@@ -71,8 +71,8 @@ pub enum Windows {
     Whole,
     /// `[from, until]`, in their order [s].
     Each(Vec<[f64; 2]>),
-    /// One after the other from the start to the end [s].
-    Sliding { length: f64, overlap: f64 },
+    /// One after the other from the start to the end [s]; they overlap by half of their periods, rounded down, where that is not told.
+    Sliding { length: f64, overlap: Option<f64> },
 }
 
 /// What a probe is to be, and when.
@@ -231,9 +231,8 @@ pub struct Planner<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     pub iterations: usize,
-    pub cost: f64,
-    /// The greatest miss of a key.
-    pub miss: f64,
+    /// Its cost, and the greatest miss of a key; `None` of a start that ends with an error.
+    pub came_to: Option<[f64; 2]>,
     /// Of several starts those that are over, and how many there are.
     pub starts: Option<[usize; 2]>,
 }

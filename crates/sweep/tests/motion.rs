@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use souple_engine::Interruption;
-use souple_sweep::{Ending, FoundMotion, Planner, Study, SweepError};
+use souple_sweep::{Ending, FoundMotion, Planner, Seen, Study, SweepError};
 
 pub fn study(scene: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene).join("motion.toml")
@@ -312,6 +312,48 @@ fn windows_come_to_the_answer_of_the_whole() {
     );
 }
 
+/// Windows of 45 periods overlap by 22 where that is left to them.
+#[test]
+fn windows_of_an_odd_length_overlap_by_half_rounded_down() {
+    let with = |windows: &str| {
+        let kind = format!("windows = {windows}\niterations = 3\nkind = ");
+        plan("planned_cart", &[("kind = ", &kind)]).unwrap().commands
+    };
+    assert_eq!(with("{ length = 0.9 }"), with("{ length = 0.9, overlap = 0.44 }"));
+    assert_ne!(with("{ length = 0.9 }"), with("{ length = 0.9, overlap = 0.46 }"));
+    // one of a single period goes on by it
+    assert_eq!(with("{ length = 0.02 }"), with("{ length = 0.02, overlap = 0 }"));
+}
+
+/// Commands to begin with are those of a file whose last row goes on, where no window has others sought; a row of another date is named.
+#[test]
+fn starts_of_a_file_are_rows_of_periods() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("plans").join("start");
+    let with = |rows: &[(f64, f64)]| {
+        std::fs::create_dir_all(&folder).unwrap();
+        let rows: String = rows.iter().map(|(date, command)| format!("{date},7,{command}\n")).collect();
+        let text = format!("time [s],cart.other [N],cart.drive [N]\n{rows}");
+        std::fs::write(folder.join("begin.csv"), text).unwrap();
+        let kind = "start = \"begin.csv\"\nwindows = [{ from = 0, until = 0.5 }]\nkind = ";
+        // a quarter of the time takes more than the motor gives
+        plan_of_changed("start", &[("largest = \"5 N\"\n", "")], &[("kind = ", kind)], 1)
+    };
+    let mut rows: Vec<(f64, f64)> =
+        (0..30).map(|row| (0.02 * f64::from(row), 0.01 * f64::from(row))).collect();
+    let found = with(&rows).unwrap();
+    for (n, command) in found.commands[0].1.iter().enumerate().skip(25) {
+        assert_eq!(*command, rows[n.min(29)].1, "{n}");
+    }
+    rows.remove(20);
+    let message = with(&rows).unwrap_err().to_string();
+    assert!(message.contains("begin.csv") && message.contains("line 22 is of 0.42 s"), "{message}");
+    assert!(message.contains("0.4 s: a row for each period of 0.02 s"), "{message}");
+    let message = with(&[(0.02, 1.0)]).unwrap_err().to_string();
+    assert!(message.contains("line 2 is of 0.02 s"), "{message}");
+    let message = with(&[]).unwrap_err().to_string();
+    assert!(message.contains("it has no rows"), "{message}");
+}
+
 /// A gate that is shut from 0.15 m to 0.75 m halfway is passed early or late: `|x − 0.45| ≥ 0.3` at `T/2`, on either side of which the least
 /// effort has a cost of its own, `Σ u² = yᵀ (G Gᵀ)⁻¹ y`. The motion at rest is before it, and so one start comes to the dearer.
 #[test]
@@ -346,6 +388,15 @@ fn several_starts_find_the_better_of_two() {
         none.contains("none of 3 starts comes to a motion that meets its keys: 3 starts: no motion"),
         "{none}"
     );
+    // and each is told when it is over, with what it came to
+    let told = std::sync::Mutex::new(Vec::new());
+    let watch = |seen: Seen| told.lock().unwrap().extend(seen.starts.map(|starts| (starts, seen.came_to)));
+    let path = study("bounded_cart");
+    let text = std::fs::read_to_string(&path).unwrap().replace("kind = \"spacetime\"", far);
+    let of_far = Study::parse(&path, &text, |_| unreachable!("a plan reads no table")).unwrap();
+    let (motion, stop) = (of_far.motion.as_ref().expect("a plan"), Interruption::default());
+    assert!(Planner { study: &of_far, motion, count: 1, stop: &stop }.run(&watch).is_err());
+    assert_eq!(told.into_inner().unwrap(), [1, 2, 3].map(|over| ([over, 3], None)));
     // the same bits at any number of jobs, and others of another seed
     let at_once = gated("starts = 6", 3);
     assert_eq!((at_once.commands, at_once.attempts), (several.commands, several.attempts.clone()));

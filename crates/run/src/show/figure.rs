@@ -225,7 +225,7 @@ impl Figure {
             unit: quantity.unit().to_owned(),
             range: common.range,
             place,
-            names: names_of(self.colours, moment),
+            names: self.names_of(moment),
             beyond: common.beyond,
         });
         let key = self.arrows.as_ref().zip(common.arrow_scale).map(|(arrows, scale)| {
@@ -269,10 +269,31 @@ impl Figure {
         let Some(quantity) = self.quantity().filter(|_| !looks_inside) else { return false };
         match (moment.skin_of(body), moment.wearer_of(body)) {
             // where both have it the edges of one would come through the other
-            (Some(skin), _) => quantity.is_of(skin),
-            (None, Some(wearer)) => quantity.is_of(wearer) && !quantity.is_of(body),
+            (Some(skin), _) => quantity.is_of_worn(skin),
+            (None, Some(wearer)) => quantity.is_of(wearer) && !quantity.is_of_worn(body),
             (None, None) => false,
         }
+    }
+
+    /// What values are called: where colours stand for kinds of elements, those there are, with how many; where they are how tissue looks,
+    /// its states.
+    fn names_of(&self, moment: &Moment) -> Vec<(f64, String)> {
+        match self.colours {
+            ColourMap::Tissue => TISSUE_STATES.map(|(value, name)| (value, name.to_owned())).into(),
+            ColourMap::Elements => self.names_of_elements(moment),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Of the bodies that are seen.
+    fn names_of_elements(&self, moment: &Moment) -> Vec<(f64, String)> {
+        let mut counts = [0; ELEMENT_KINDS.len()];
+        let seen = moment.bodies.iter().filter(|body| !self.hides(moment, body));
+        for cell in seen.flat_map(|body| body.mesh.cells()) {
+            counts[number_of(cell.kind)] += 1;
+        }
+        let named = counts.iter().zip(ELEMENT_KINDS).enumerate().filter(|(_, (count, _))| **count > 0);
+        named.map(|(number, (count, name))| (number as f64, format!("{count} {name}"))).collect()
     }
 
     /// Whether a point is not cut away.
@@ -548,27 +569,8 @@ impl Figure {
     }
 }
 
-/// What values are called: where colours stand for kinds of elements, those there are, with how many; where they are how tissue looks,
-/// its states.
-fn names_of(colours: ColourMap, moment: &Moment) -> Vec<(f64, String)> {
-    match colours {
-        ColourMap::Tissue => TISSUE_STATES.map(|(value, name)| (value, name.to_owned())).into(),
-        ColourMap::Elements => names_of_elements(moment),
-        _ => Vec::new(),
-    }
-}
-
 /// Values of [`ColourMap::Tissue`] and what they are.
 const TISSUE_STATES: [(f64, &str); 3] = [(-1.0, "charred"), (0.0, "untouched"), (1.0, "pressed white")];
-
-fn names_of_elements(moment: &Moment) -> Vec<(f64, String)> {
-    let mut counts = [0; ELEMENT_KINDS.len()];
-    for cell in moment.bodies.iter().flat_map(|body| body.mesh.cells()) {
-        counts[number_of(cell.kind)] += 1;
-    }
-    let named = counts.iter().zip(ELEMENT_KINDS).enumerate().filter(|(_, (count, _))| **count > 0);
-    named.map(|(number, (count, name))| (number as f64, format!("{count} {name}"))).collect()
-}
 
 /// The colour of a body, or of those of its links that are in another state than at the start.
 fn colour_of(body: usize, state: u8) -> Colour {

@@ -83,9 +83,14 @@ impl<'a> Quantity<'a> {
         self.field == TISSUE
     }
 
-    /// Whether a body has the field that it is of.
+    /// Whether a body has what it is of.
     pub fn is_of(&self, body: &BodyMoment) -> bool {
-        body.has_field(self.field)
+        body.has_field(self.field) || (self.field == ELEMENT && body.mesh.cell_count() > 0)
+    }
+
+    /// Whether a skin or a dress has what it is of: its triangles are no elements of a body.
+    pub fn is_of_worn(&self, skin: &BodyMoment) -> bool {
+        skin.has_field(self.field)
     }
 
     /// A value for each point of a body; `None` where it has no such field.

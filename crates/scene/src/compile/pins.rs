@@ -260,7 +260,7 @@ pub fn warn_of_idle(draft: &mut Draft) {
     let mut warnings = Vec::new();
     for body in &draft.bodies {
         let held = held_points(draft, body);
-        warnings.extend(nearly_all(draft, body, &held));
+        warnings.extend(nearly_all(draft, body));
         for load in &body.spec.loads {
             let Some(region) = &load.region else { continue };
             let points = draft.selector(body).points(region);
@@ -311,33 +311,47 @@ pub fn warn_of_idle(draft: &mut Draft) {
 /// A body with so large a part of its points pinned hardly moves: a region may be in other units than it.
 const NEARLY_ALL: f64 = 0.9;
 
-/// Says where a solid is pinned nearly whole, and no pin says that it is of all of it.
-fn nearly_all(draft: &Draft, body: &Placed, held: &[bool]) -> Option<String> {
+/// Says where a solid is pinned nearly whole, and no pin says that it is of all of it. What pins lead is meant to be: a body may be driven
+/// by them alone.
+fn nearly_all(draft: &Draft, body: &Placed) -> Option<String> {
     let is_meant =
         |pin: &Pin| pin.region.as_ref().is_some_and(|region| matches!(region.kind, RegionKind::All));
     if body.spec.material.is_none() || body.spec.pins.iter().any(is_meant) {
         return None;
     }
-    let pin = body.spec.pins.first()?;
-    let (count, all) = (held.iter().filter(|is_held| **is_held).count(), held.len());
-    (count as f64 > NEARLY_ALL * all as f64).then(|| {
-        format!(
-            "{}: {count} of the {all} points of body `{}` are pinned along all axes: next to nothing of it moves; are the region's lengths right?",
-            draft.place(&pin.site),
-            body.spec.name
-        )
-    })
+    let rests =
+        points_where(draft, body, |constraint| constraint.free == Mat3::ZERO && constraint.motion.is_none());
+    let (count, all) = (rests.iter().filter(|rests| **rests).count(), rests.len());
+    if count as f64 <= NEARLY_ALL * all as f64 {
+        return None;
+    }
+    let holds = |pin: &&Pin| {
+        let points = pin.region.as_ref().map(|region| draft.selector(body).points(region));
+        points.map_or(0, |points| points.iter().filter(|point| rests[**point as usize]).count())
+    };
+    // the first of those that hold as many
+    let pin = body.spec.pins.iter().rev().max_by_key(holds)?;
+    Some(format!(
+        "{}: {count} of the {all} points of body `{}` are pinned along all axes, most of them here: next to nothing of it moves; are the region's lengths right?",
+        draft.place(&pin.site),
+        body.spec.name
+    ))
 }
 
 /// Per point of a body: whether it is held along all axes.
 fn held_points(draft: &Draft, body: &Placed) -> Vec<bool> {
+    points_where(draft, body, |constraint| constraint.free == Mat3::ZERO)
+}
+
+/// Per point of a body: whether a constraint that is so is on it.
+fn points_where(draft: &Draft, body: &Placed, is_so: impl Fn(&Constraint) -> bool) -> Vec<bool> {
     let system = &draft.systems[body.system];
-    let mut held = vec![false; body.mesh.points.len()];
-    for constraint in system.constraints.iter().filter(|constraint| constraint.free == Mat3::ZERO) {
+    let mut found = vec![false; body.mesh.points.len()];
+    for constraint in system.constraints.iter().filter(|constraint| is_so(constraint)) {
         let point = system.kinematics.point_block_row(constraint.block).and_then(|row| body.point_of(row));
         if let Some(point) = point {
-            held[point as usize] = true;
+            found[point as usize] = true;
         }
     }
-    held
+    found
 }

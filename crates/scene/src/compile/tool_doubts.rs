@@ -1,6 +1,6 @@
 //! Tools that start where nothing touches them, and hands whose coupling is too stiff for them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use souple_engine::Motion;
 use souple_engine::obstacle::Side;
@@ -19,12 +19,31 @@ use crate::reader::Chosen;
 use crate::spec::boundary::MotionSpec;
 use crate::spec::contact::Against;
 
-/// Dates at which it is looked how fast a hand means to move.
+/// Dates over the run at which it is looked how fast a hand means to move, beside those of its key frames.
 const SAMPLES: u32 = 2000;
+/// Parts of the time from a key frame to the next at which it is looked: what is smooth is fastest halfway.
+const BETWEEN_KEYS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// Finds cells of bodies, each by one tree that is built when first asked.
+#[derive(Default)]
+struct Locators<'a>(BTreeMap<&'a str, CellLocator<'a>>);
+
+impl<'a> Locators<'a> {
+    fn of(&mut self, body: &'a Placed) -> &CellLocator<'a> {
+        self.0.entry(&body.spec.name).or_insert_with(|| CellLocator::new(&body.mesh))
+    }
+}
 
 /// Warns of all of them.
 pub fn warn(draft: &mut Draft) {
-    let mut warnings = Vec::new();
+    let warnings = doubts(draft);
+    // several contacts may be of one tool and one body
+    let mut told = BTreeSet::new();
+    draft.warnings.extend(warnings.into_iter().filter(|warning| told.insert(warning.clone())));
+}
+
+fn doubts(draft: &Draft) -> Vec<String> {
+    let (mut warnings, mut locators) = (Vec::new(), Locators::default());
     for contact in &draft.spec.contacts {
         let Some(Against::Shape(name)) = &contact.against else { continue };
         let Some(shape) = draft.spec.shapes.iter().find(|shape| shape.name == *name) else { continue };
@@ -33,32 +52,38 @@ pub fn warn(draft: &mut Draft) {
             continue;
         }
         let tool = (shape.shape.as_ref(), shape.motion.as_ref(), &shape.site);
-        warnings.extend(inside(draft, &contact.body, &format!("shape `{name}`"), tool));
+        warnings.extend(inside(draft, &mut locators, &contact.body, &format!("shape `{name}`"), tool));
     }
     for hand in &draft.spec.hands {
         let tool = (hand.tool.as_ref(), hand.motion.as_ref(), &hand.site);
-        warnings.extend(inside(draft, &hand.touch.body, &format!("the tool of hand `{}`", hand.name), tool));
+        let what = format!("the tool of hand `{}`", hand.name);
+        warnings.extend(inside(draft, &mut locators, &hand.touch.body, &what, tool));
     }
     for (info, spec) in draft.hands.iter().filter_map(|info| {
         let spec = draft.spec.hands.iter().find(|hand| hand.name == info.name)?;
         Some((info, spec))
     }) {
         let Some(arm) = info.device.arm().filter(|_| spec.touch.imposed.is_none()) else { continue };
-        let doubts = too_stiff(&info.port.coupling, arm, draft.spec.run.duration);
+        let speed = fastest(arm.intent.as_ref(), spec.motion.as_ref(), draft.spec.run.duration);
+        let doubts = too_stiff(&info.port.coupling, arm, speed);
         let place = draft.place(&spec.site);
         warnings.extend(doubts.into_iter().map(|doubt| format!("{place}: hand `{}`: {doubt}", spec.name)));
     }
-    // several contacts may be of one tool and one body
-    let mut told = BTreeSet::new();
-    draft.warnings.extend(warnings.into_iter().filter(|warning| told.insert(warning.clone())));
+    warnings
 }
 
 /// A tool, what moves it, and where it is written.
 type Tool<'a> = (Option<&'a Chosen<BuildShape>>, Option<&'a MotionSpec>, &'a Site);
 
 /// Of a tool that starts with all of its surface inside the body that it is to touch.
-fn inside(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> Option<String> {
-    let body: &Placed = draft.body(body)?;
+fn inside<'a>(
+    draft: &'a Draft,
+    locators: &mut Locators<'a>,
+    body: &str,
+    what: &str,
+    (shape, moves, site): Tool,
+) -> Option<String> {
+    let body = draft.body(body)?;
     if body.mesh.cell_count() == 0 || body.mesh.dimension() < 3 {
         return None;
     }
@@ -69,7 +94,7 @@ fn inside(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> 
     }
     let moves = motion(draft.log, moves, site)?;
     let offset = moves.map_or(Vec3::ZERO, |moves| moves.offset(Vec3::ZERO, 0.0));
-    let locator = CellLocator::new(&body.mesh);
+    let locator = locators.of(body);
     let is_inside =
         |place: &Vec3| locator.carrier(*place + offset).is_some_and(|location| location.distance == 0.0);
     let points = &outline.surface.points;
@@ -88,7 +113,7 @@ fn inside(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> 
 /// The device feels its force a tick `T` long, and the tool is led to where the device was: as stiff as may be it is a tick behind,
 /// `x - y = T v`. Then `M v' = M v - T (k T v + c (v - v₋))`, whose swing from tick to tick dies where `T² k + 2 T c < 2 M`. At a speed `v` of the
 /// hand the spring is stretched by `T v` in the air already.
-fn too_stiff(coupling: &Coupling, arm: &Arm, duration: f64) -> Vec<String> {
+fn too_stiff(coupling: &Coupling, arm: &Arm, speed: f64) -> Vec<String> {
     let Coupling { stiffness, damping, limit } = *coupling;
     let mut doubts = Vec::new();
     let (asked, bound) = (TICK * TICK * stiffness + 2.0 * TICK * damping, 2.0 * arm.mass);
@@ -102,7 +127,6 @@ fn too_stiff(coupling: &Coupling, arm: &Arm, duration: f64) -> Vec<String> {
             four_digits(asked)
         ));
     }
-    let speed = fastest(arm.intent.as_ref(), duration);
     let drag = stiffness * TICK * speed;
     if drag >= limit {
         doubts.push(format!(
@@ -118,10 +142,17 @@ fn too_stiff(coupling: &Coupling, arm: &Arm, duration: f64) -> Vec<String> {
 }
 
 /// The greatest speed that is meant in the course of a run [m/s].
-fn fastest(intent: &dyn Motion, duration: f64) -> f64 {
-    let speed =
-        |sample: u32| intent.velocity(Vec3::ZERO, duration * f64::from(sample) / f64::from(SAMPLES)).length();
-    (0..=SAMPLES).map(speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+fn fastest(intent: &dyn Motion, written: Option<&MotionSpec>, duration: f64) -> f64 {
+    let sampled = (0..=SAMPLES).map(|sample| duration * f64::from(sample) / f64::from(SAMPLES));
+    let keys = match written {
+        Some(MotionSpec::KeyFrames { times, .. }) => times.as_slice(),
+        _ => &[],
+    };
+    let between =
+        keys.windows(2).flat_map(|ends| BETWEEN_KEYS.map(|part| ends[0] + part * (ends[1] - ends[0])));
+    let times = sampled.chain(between).filter(|time| (0.0..=duration).contains(time));
+    let speed = |time: f64| intent.velocity(Vec3::ZERO, time).length();
+    times.map(speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -147,9 +178,9 @@ mod tests {
     /// The usual coupling is not, one beyond `2 M/T²` is.
     #[test]
     fn couplings_are_bounded_by_the_arm() {
-        assert!(too_stiff(&Coupling::DEFAULT, &arm(), 1.0).is_empty());
+        assert!(too_stiff(&Coupling::DEFAULT, &arm(), 0.0).is_empty());
         let bound = 2.0 * 0.4 / (TICK * TICK);
-        let of = |stiffness| too_stiff(&Coupling { stiffness, damping: 0.0, limit: 5.0 }, &arm(), 1.0);
+        let of = |stiffness| too_stiff(&Coupling { stiffness, damping: 0.0, limit: 5.0 }, &arm(), 0.0);
         assert!(of(0.99 * bound).is_empty());
         assert!(of(1.01 * bound)[0].contains("too stiff for an arm of 0.4 kg"));
     }

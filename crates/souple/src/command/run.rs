@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status, Summary};
 use souple_scene::Scene;
+use souple_sweep::with_unit;
 use souple_table::{counted, four_digits};
 
 use super::progress::Meter;
@@ -234,12 +235,12 @@ fn print_summary(report: &Report, out: Option<&Path>) {
     }
 }
 
-/// Between what a number was, and how long a vector was at most; nothing of what never changed.
+/// Between what a number was, and how long a vector was at most; nothing of what never changed, or was no number at some date.
 fn extremes(probe: &Summary) -> String {
     let four = four_digits;
     match (probe.longest, &probe.min[..], &probe.max[..]) {
-        (Some((length, time)), ..) if probe.min != probe.max => {
-            format!("; at most {} {} long, at {} s", four(length), probe.unit, four(time)).replace("  ", " ")
+        (Some((length, time)), ..) if probe.min != probe.max && !length.is_nan() => {
+            format!("; at most {} long, at {} s", with_unit(&four(length), probe.unit), four(time))
         }
         (None, [min], [max]) if min < max => {
             format!(
@@ -295,4 +296,39 @@ pub fn run_default_scene() -> Result<End, Refusal> {
     print_line("  souple check scenes/cantilever/scene.toml");
     print_line("  souple run scenes/twisted_bar/scene.toml --out out/twisted_bar");
     Ok(end)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(unit: &'static str, values: [&[f64]; 2], longest: Option<(f64, f64)>) -> Summary {
+        let [min, max] = values.map(<[f64]>::to_vec);
+        Summary {
+            name: "tip".to_owned(),
+            unit,
+            first: min.clone(),
+            last: max.clone(),
+            min_at: vec![0.25; min.len()],
+            max_at: vec![1.0; max.len()],
+            min,
+            max,
+            longest,
+            frequency: Vec::new(),
+        }
+    }
+
+    /// Units stand where there are some, and nothing where nothing changed or a number is missing.
+    #[test]
+    fn extremes_are_told_of_what_changed() {
+        let of = |unit, values, longest| extremes(&summary(unit, values, longest));
+        assert_eq!(of("m", [&[-1.0], &[0.5]], None), "; from -1 at 0.25 s to 0.5 at 1 s");
+        assert_eq!(of("m", [&[1.0], &[1.0]], None), "");
+        assert_eq!(of("m", [&[f64::NAN], &[f64::NAN]], None), "");
+        let vectors: [&[f64]; 2] = [&[0.0; 3], &[3.0, 4.0, 0.0]];
+        assert_eq!(of("m", vectors, Some((5.0, 1.0))), "; at most 5 m long, at 1 s");
+        assert_eq!(of("", vectors, Some((5.0, 1.0))), "; at most 5 long, at 1 s");
+        let broken: [&[f64]; 2] = [&[f64::NAN, 0.0, 0.0], &[f64::NAN, 1.0, 0.0]];
+        assert_eq!(of("m", broken, Some((f64::NAN, 1.0))), "");
+    }
 }

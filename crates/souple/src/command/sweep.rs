@@ -248,7 +248,10 @@ fn plan(arguments: &Arguments, study: &Study, motion: &Motion) -> Result<End, Re
     let meter = Meter::new("iterations", arguments.quiet);
     let watch = |seen: Seen| {
         let of = seen.starts.map_or(String::new(), |[over, all]| format!("start {over} of {all} over, "));
-        let message = format!("{of}cost {:.4e}, miss {:.1e}", seen.cost, seen.miss);
+        let message = match seen.came_to {
+            Some([cost, miss]) => format!("{of}cost {cost:.4e}, miss {miss:.1e}"),
+            None => format!("{of}without a motion"),
+        };
         meter.show(seen.iterations as u64, motion.iterations as u64, message);
     };
     let count = arguments.jobs.map_or(cores, |jobs| jobs as usize);

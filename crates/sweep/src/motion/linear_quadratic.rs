@@ -58,7 +58,7 @@ pub(super) fn search(
         };
         (now, paid) = (next, next_paid);
         policy = regulator.policy(&now)?;
-        watch(Seen { iterations, cost: paid, miss: regulator.greatest_miss(&now), starts: None });
+        watch(Seen { iterations, came_to: Some([paid, regulator.greatest_miss(&now)]), starts: None });
     }
     regulator.course.refuse_what_remembers(&now)?;
     regulator.course.refuse_what_is_cut(&now)?;

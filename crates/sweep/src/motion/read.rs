@@ -147,10 +147,11 @@ impl Windows {
                 let length = entry.seconds("length").filter(|length| *length > 0.0);
                 let length = length.ok_or_else(|| entry.fault("length", "seconds above 0"))?;
                 let overlap = match entry.get("overlap") {
-                    None => 0.5 * length,
+                    None => None,
                     Some(_) => {
                         let overlap = entry.seconds("overlap").filter(|it| (0.0..length).contains(it));
-                        overlap.ok_or_else(|| entry.fault("overlap", "seconds from 0 to below the length"))?
+                        let expected = "seconds from 0 to below the length";
+                        Some(overlap.ok_or_else(|| entry.fault("overlap", expected))?)
                     }
                 };
                 Ok(Self::Sliding { length, overlap })

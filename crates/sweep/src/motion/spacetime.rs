@@ -157,7 +157,7 @@ impl<'a> Search<'a> {
                 break;
             }
             let (cost, miss) = (self.paid(&now), self.greatest_miss(&now));
-            watch(Seen { iterations, cost, miss, starts: None });
+            watch(Seen { iterations, came_to: Some([cost, miss]), starts: None });
         }
         self.found(now, iterations, ending)
     }
@@ -506,8 +506,9 @@ fn ranges(windows: &Windows, periods: usize, period: f64) -> Result<Vec<Range<us
         Windows::Sliding { length, overlap } => {
             let length = whole("plan.windows.length", *length, period)?;
             let overlap = match overlap {
-                0.0 => 0,
-                time => whole("plan.windows.overlap", *time, period)?,
+                None => (length / 2).max(1),
+                Some(0.0) => 0,
+                Some(time) => whole("plan.windows.overlap", *time, period)?,
             };
             let on = length.saturating_sub(overlap).max(1);
             let mut all = Vec::new();

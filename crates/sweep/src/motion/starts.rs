@@ -35,18 +35,23 @@ pub(super) fn search(planner: &Planner, how: &Spacetime, watch: Watch) -> Result
     if how.starts == 1 || planner.stop.is_wished() {
         return first;
     }
+    let over = AtomicUsize::new(0);
+    let tell = |found: &Result<FoundMotion, SweepError>| {
+        let starts = Some([1 + over.fetch_add(1, Ordering::Relaxed), how.starts]);
+        let iterations = found.as_ref().map_or(0, |found| found.iterations);
+        let found = found.as_ref().ok();
+        let came_to = found.map(|found| [found.cost, greatest_miss(planner.motion, found)]);
+        watch(Seen { iterations, came_to, starts });
+    };
+    tell(&first);
     let sizes = sizes(&mut search, &first)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(planner.count.max(1)).build()?;
-    let over = AtomicUsize::new(1);
     let attempt = |index: usize| {
-        let mut search = Search::start(planner, how)?;
-        let commands = random(how.seed, index, search.course.periods, &sizes);
-        let found = search.run(commands, &|_| {});
-        let starts = Some([1 + over.fetch_add(1, Ordering::Relaxed), how.starts]);
-        if let Ok(found) = &found {
-            let (cost, miss) = (found.cost, greatest_miss(planner.motion, found));
-            watch(Seen { iterations: found.iterations, cost, miss, starts });
-        }
+        let found = Search::start(planner, how).and_then(|mut search| {
+            let commands = random(how.seed, index, search.course.periods, &sizes);
+            search.run(commands, &|_| {})
+        });
+        tell(&found);
         found
     };
     let others: Vec<Result<FoundMotion, SweepError>> =
