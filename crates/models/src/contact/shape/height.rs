@@ -31,16 +31,6 @@ const BEND: f64 = 1e-5;
 /// Squares along each side of what is drawn.
 const SQUARES: usize = 64;
 
-/// Where a point stands over the ground.
-enum Foot {
-    /// A place and the normal there.
-    At(Vec3, Vec3),
-    /// Farther above than it is asked for.
-    Beyond,
-    /// Over several places alike.
-    OfNoOne,
-}
-
 impl Height {
     /// Place of the ground at x, y, and its normal.
     fn ground(&self, x: f64, y: f64) -> (Vec3, Vec3) {
@@ -50,8 +40,8 @@ impl Height {
         (Vec3::new(x, y, along_x.value), normal / normal.length())
     }
 
-    /// The place of the ground that a point is right above or below, where it is no farther above than `reach`.
-    fn foot(&self, point: Vec3, reach: f64) -> Foot {
+    /// The place of the ground that a point is right above or below.
+    fn foot(&self, point: Vec3) -> Option<(Vec3, Vec3)> {
         let (mut place, mut normal) = self.ground(point.x, point.y);
         let mut moved = f64::INFINITY;
         for _ in 0..FEET {
@@ -60,19 +50,14 @@ impl Height {
             let step = (next - place).length();
             // feet that do not draw together are of no one place
             if step.is_nan() || step > moved {
-                return Foot::OfNoOne;
-            }
-            // those that draw together by half or more go no farther than once more as far
-            let (off, draw_together) = (point - next, moved.is_finite() && step <= 0.5 * moved);
-            if draw_together && off.dot(turned) > 0.0 && off.length() - step > reach {
-                return Foot::Beyond;
+                return None;
             }
             (place, normal, moved) = (next, turned, step);
             if step <= FOUND * (1.0 + place.length()) {
-                return Foot::At(place, normal);
+                return Some((place, normal));
             }
         }
-        Foot::OfNoOne
+        None
     }
 
     /// `∂normal/∂x` on the ground: `-P ∇²f P/√(1 + |∇f|²)`, `P = I - n nᵀ`.
@@ -95,14 +80,10 @@ impl Shape for Height {
         if !point.is_finite() {
             return None;
         }
-        let (place, normal) = match self.foot(point, reach) {
-            Foot::At(place, normal) => (place, normal),
-            Foot::Beyond => return None,
-            Foot::OfNoOne => {
-                let (place, normal) = self.ground(point.x, point.y);
-                let distance = (point - place).dot(normal);
-                return (distance <= reach).then_some(Nearest { distance, normal, curvature: Mat3::ZERO });
-            }
+        let Some((place, normal)) = self.foot(point) else {
+            let (place, normal) = self.ground(point.x, point.y);
+            let distance = (point - place).dot(normal);
+            return (distance <= reach).then_some(Nearest { distance, normal, curvature: Mat3::ZERO });
         };
         let distance = (point - place).dot(normal);
         if distance > reach {
