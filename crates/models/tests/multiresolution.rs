@@ -491,12 +491,17 @@ fn budgets_are_kept() {
 }
 
 /// What a look came to is kept for the next one on the same grounds, and changes nothing: a run that goes on from a snapshot knows nothing of it. While points
-/// come, where a budget lets few come, where they stay and go.
+/// come, where a budget lets few come, where velocities ask for rates that it counts, where points stay and go.
 #[test]
 fn looks_follow_from_memory_alone() {
     let meshes = balls();
     let criterion = Criterion { measure: Measure::Jump, refine: 0.05, coarsen: 0.0125, settled: None };
-    for budget in [None, Some(3000.0)] {
+    let strengths =
+        [0.0, 20.0, 20.0, 60.0, 60.0, 60.0, 61.0, 62.0, 64.0, 70.0, 80.0, 60.0, 30.0, 30.0, 0.0, 0.0, 0.0];
+    let asking = Division { velocity_jump: 0.05, ..DIVISION };
+    for (budget, division) in
+        [(None, DIVISION), (Some(3000.0), DIVISION), (None, asking), (Some(3000.0), asking)]
+    {
         let looks = |forgets: bool| {
             let mut body = Alone::new(budgeted(&meshes, criterion, budget));
             let look = |strength: f64| {
@@ -507,12 +512,12 @@ fn looks_follow_from_memory_alone() {
                 if forgets {
                     body.scratch = body.force.new_scratch();
                 }
-                body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+                body.force.adapt(&division, &mut body.rows, &mut body.memory, &mut body.scratch);
                 body.memory.clone()
             };
-            [0.0, 20.0, 20.0, 60.0, 60.0, 60.0, 60.0, 30.0, 30.0, 0.0, 0.0, 0.0, 0.0].map(look)
+            strengths.map(look)
         };
-        assert!(looks(true) == looks(false), "{budget:?}");
+        assert!(looks(true) == looks(false), "{budget:?}, {division:?}");
     }
 }
 

@@ -141,11 +141,7 @@ fn what_slides_is_borne_below() {
 #[test]
 fn the_higher_of_two_places_bears() {
     let count = 20;
-    let apart = 1e-6;
-    let joints: Vec<Joint> = column(count, Law::Cone(0.0))
-        .into_iter()
-        .flat_map(|joint| [Joint { off: joint.off + Vec3::X * apart, ..joint }, joint])
-        .collect();
+    let joints = doubled(count, 1e-6);
     let (forces, rounds) = by_rounds(&joints);
     // as of columns alone, of whose two places either may be off
     let most = 2.0 * uncertainty(count);
@@ -169,36 +165,68 @@ fn limits_are_met_as_by_sweeps() {
     assert!(rounds < sweeps, "{rounds}, by sweeps alone {sweeps}");
 }
 
+/// Joints of something else beside so many masses.
+fn beside(masses: usize, joints: &[Joint]) -> impl Iterator<Item = Joint> {
+    let of = move |mass: Option<usize>| mass.map(|mass| mass + masses);
+    joints.iter().map(move |joint| Joint { above: of(joint.above), below: of(joint.below), ..*joint })
+}
+
+/// A column whose masses touch at two places, of which one is higher by so much.
+fn doubled(count: usize, apart: f64) -> Vec<Joint> {
+    let both = |joint: Joint| [Joint { off: joint.off + Vec3::X * apart, ..joint }, joint];
+    column(count, Law::Cone(0.0)).into_iter().flat_map(both).collect()
+}
+
+/// What two places contradict each other by is no matter of a column beside them: it is found as if they agreed, in as many sweeps and products and as many
+/// more as take forces away from the lower of each two.
+#[test]
+fn contradictions_leave_others_be() {
+    let (count, long) = (20, 80);
+    let agreed = by_both(count, long, 0.0);
+    for apart in [1e-9, 1e-7, 1e-6] {
+        assert!(by_both(count, long, apart) < 3 * agreed, "{apart}");
+    }
+}
+
+/// Sweeps and products of a doubled column beside a plain one, whose forces are its weight.
+fn by_both(count: usize, long: usize, apart: f64) -> u64 {
+    let mut joints = doubled(count, apart);
+    joints.extend(beside(count, &column(long, Law::Cone(0.0))));
+    let (forces, rounds) = by_rounds(&joints);
+    for (joint, force) in forces[2 * count..].iter().enumerate() {
+        let weight = (long - joint) as f64;
+        assert!((force.x - weight).abs() < 2.0 * uncertainty(long), "{apart}, {joint}: {force:?}");
+    }
+    rounds
+}
+
 /// Masses between a floor and a ceiling that is a little too low: no forces open all gaps, and none has to. They bear their weight as a column beside them does, whose
-/// search on a face must not be led along what the others contradict each other by.
+/// search on a face must not be led along what the others contradict each other by, nor they along what two places of a third do.
 #[test]
 fn what_is_squeezed_bears_its_weight() {
-    let (squeezed, beside) = (12, 80);
+    let (squeezed, plain, twice) = (12, 80, 10);
     // so little that each joint of the column is asked for less than it may be off
     for (too_near, friction) in [(5e-8, 0.0), (1e-7, 0.0), (1e-7, 0.4)] {
         let law = Law::Cone(friction);
         let mut joints = column(squeezed, law);
         joints.push(Joint { above: None, below: Some(squeezed - 1), law, off: Vec3::X * (1.0 - too_near) });
-        let of = |mass: Option<usize>| mass.map(|mass| mass + squeezed);
-        let others = column(beside, law);
-        joints.extend(others.iter().map(|joint| Joint {
-            above: of(joint.above),
-            below: of(joint.below),
-            ..*joint
-        }));
+        joints.extend(beside(squeezed, &column(plain, law)));
+        joints.extend(beside(squeezed + plain, &doubled(twice, 2e-9)));
         let (forces, rounds) = by_rounds(&joints);
-        let weights =
-            (0..=squeezed).map(|joint| squeezed - joint).chain((0..beside).map(|joint| beside - joint));
-        let more: Vec<f64> =
-            forces.iter().zip(weights).map(|(force, weight)| force.x - weight as f64).collect();
-        // floor and ceiling may press against each other, by no more than weights had them do on the way
-        let pressed = more[squeezed];
-        assert!((0.0..squeezed as f64).contains(&pressed), "{pressed}");
         // each product and each sweep may press by what the walls are too near
-        let most = rounds as f64 * too_near + 2.0 * uncertainty(beside);
-        for (joint, more) in more.iter().enumerate() {
-            let expected = if joint <= squeezed { pressed } else { 0.0 };
-            assert!((more - expected).abs() < most, "joint {joint}: {more} for {expected}, {most:e}");
+        let most = rounds as f64 * too_near + 2.0 * uncertainty(plain);
+        let (row, others) = forces.split_at(squeezed + 1);
+        let (column, pairs) = others.split_at(plain);
+        // floor and ceiling may press against each other, by no more than weights had them do on the way
+        let pressed = row[squeezed].x;
+        assert!((0.0..squeezed as f64).contains(&pressed), "{pressed}");
+        let expected = (0..=squeezed).map(|joint| pressed + (squeezed - joint) as f64);
+        let expected = expected.chain((0..plain).map(|joint| (plain - joint) as f64));
+        let expected = expected.chain((0..twice).map(|joint| (twice - joint) as f64));
+        let found = row.iter().chain(column).map(|force| force.x);
+        let found = found.chain(pairs.chunks(2).map(|pair| pair[0].x + pair[1].x));
+        for (place, (found, expected)) in found.zip(expected).enumerate() {
+            assert!((found - expected).abs() < most, "{place}: {found} for {expected}, {most:e}");
         }
     }
 }

@@ -9,8 +9,8 @@
 //!
 //! `D` has directions in which it resists nothing, where more contacts bear than are needed, and contacts may contradict each other along these: in a row of
 //! bodies between walls that are a little too near no forces open all gaps. Conjugate gradients would go along such a direction ever farther the better the
-//! rest is solved; conjugate residuals end where the rest is. Then a force that the contradiction takes away is taken away: of two places at different
-//! heights the lower one bears nothing. Where it adds to all forces there is no end, and nothing is done.
+//! rest is solved; conjugate residuals end where the rest is. Then a force that the contradiction takes away is taken away, with what hangs together with it: of two
+//! places at different heights the lower one bears nothing. Where it adds to all forces there is no end, and nothing is done.
 
 use souple_math::Vec3;
 use souple_solve::reduce::dot;
@@ -40,12 +40,15 @@ pub(super) struct Face {
     direction: Vec<Vec3>,
     product: Vec<Vec3>,
     product_alone: Vec<Vec3>,
+    /// Places that hang together with one, and those whose neighbours are still to be looked at.
+    together: Vec<bool>,
+    waiting: Vec<u32>,
 }
 
 /// Of what a change moves alone, what it moves in fact, where it meets no resistance but that of rounding and of what is left of the rest.
 const NO_RESISTANCE: f64 = 1e-13;
-/// Of the greatest change of a force, weighed by what it moves alone, what is not left of the rest: a chain of a thousand bodies resists with 1e-6 of what
-/// they do alone, and the root of [`NO_RESISTANCE`] over that is 3e-4.
+/// Of the size of all changes of forces, weighed by what they move alone, what one has in a contradiction: more than what is left of the rest may have,
+/// which is the root of [`NO_RESISTANCE`] over 1e-6, 3e-4. With that a chain of a thousand bodies resists, as part of what they do alone.
 const SHARE: f64 = 1e-3;
 /// Of the way to where a force ends, that by which it may leave its cone before: without friction both are one place, to rounding of a root.
 const APEX: f64 = 1e-7;
@@ -79,10 +82,12 @@ impl Face {
     }
 
     pub(super) fn bytes(&self) -> usize {
-        let Self { residual, alone, moved_alone, direction, product, product_alone, free } = self;
+        let Self { residual, alone, moved_alone, direction, product, product_alone, .. } = self;
         let vectors = [residual, alone, moved_alone, direction, product, product_alone];
         size_of::<Vec3>() * vectors.map(Vec::capacity).iter().sum::<usize>()
-            + size_of::<Free>() * free.capacity()
+            + size_of::<Free>() * self.free.capacity()
+            + self.together.capacity()
+            + 4 * self.waiting.capacity()
     }
 }
 
@@ -146,7 +151,7 @@ impl ContactSystem {
             }
             resistance_before = resistance;
             let wanted = resistance / dot(&face.product, &face.product_alone);
-            let limit = self.first_limit(face, 0.0).filter(|(way, ..)| *way <= wanted);
+            let limit = self.first_limit(face).filter(|(way, ..)| *way <= wanted);
             let way = limit.map_or(wanted, |(way, ..)| way);
             if !way.is_finite() {
                 return false;
@@ -165,18 +170,44 @@ impl ContactSystem {
     }
 
     /// Of what contacts contradict each other by, which is all that is left and meets no resistance: goes along it until a force that it takes away has
-    /// come to a limit. False where there is none.
+    /// come to a limit, with all that hang together with that one. False where there is none.
     fn take_away(&mut self, face: &mut Face) -> bool {
-        face.direction.copy_from_slice(&face.alone);
-        let greatest = (0..self.places.len())
-            .map(|place| self.weight_of(place, face.direction[place]))
-            .fold(0.0, f64::max);
-        let Some((way, place, left)) = self.first_limit(face, SHARE * greatest) else { return false };
+        // what is left of the rest would undo what is found of it: the way is as long as contradictions are small
+        let least = SHARE * dot(&face.residual, &face.alone).sqrt();
+        for (place, by) in face.direction.iter_mut().enumerate() {
+            let alone = face.alone[place];
+            *by = if self.weight_of(place, alone) > least { alone } else { Vec3::ZERO };
+        }
+        let Some((way, place, left)) = self.first_limit(face) else { return false };
+        self.gather(face, place);
         for (change, by) in self.change.iter_mut().zip(&face.direction) {
             *change += *by * way;
         }
         self.hold(face, place, left);
         true
+    }
+
+    /// Keeps of the direction what hangs together with a place by others that are free: what contacts elsewhere contradict each other by is another matter.
+    fn gather(&self, face: &mut Face, place: usize) {
+        face.together.clear();
+        face.together.resize(self.places.len(), false);
+        face.together[place] = true;
+        face.waiting.push(place as u32);
+        while let Some(at) = face.waiting.pop() {
+            let slots = self.starts[at as usize]..self.starts[at as usize + 1];
+            for other in &self.columns[slots] {
+                let is_known = face.free[*other as usize] == Free::Nothing
+                    || std::mem::replace(&mut face.together[*other as usize], true);
+                if !is_known {
+                    face.waiting.push(*other);
+                }
+            }
+        }
+        for (by, together) in face.direction.iter_mut().zip(&face.together) {
+            if !together {
+                *by = Vec3::ZERO;
+            }
+        }
     }
 
     /// What force at a place would bring its own gap and slip to where they are to be.
@@ -198,12 +229,11 @@ impl ContactSystem {
         (0..self.places.len()).all(is_near)
     }
 
-    /// How far along the direction the first force comes to a limit, at which place, and what is free there then; of forces whose change weighs more than
-    /// the least.
-    fn first_limit(&self, face: &Face, least: f64) -> Option<(f64, usize, Free)> {
+    /// How far along the direction the first force comes to a limit, at which place, and what is free there then.
+    fn first_limit(&self, face: &Face) -> Option<(f64, usize, Free)> {
         let limit_at = |place: &usize| {
             let by = face.direction[*place];
-            if face.free[*place] == Free::Nothing || self.weight_of(*place, by) <= least {
+            if by == Vec3::ZERO {
                 return None;
             }
             let force = self.force_at(*place);
@@ -218,7 +248,8 @@ impl ContactSystem {
                     }
                 }
             };
-            (way < f64::INFINITY).then_some((way, *place, left))
+            // a force that sweeps or a way before has left beyond its limit is there
+            (way < f64::INFINITY).then_some((way.max(0.0), *place, left))
         };
         let places = (0..self.places.len()).filter_map(|place| limit_at(&place));
         places.reduce(|first, next| if next.0 < first.0 { next } else { first })

@@ -28,7 +28,8 @@ impl ContactSystem {
             }
         }
         if self.sweep_on(SWEEPS_BEFORE) == Sweep::Moved {
-            self.descend(PRODUCTS);
+            // as many as unknowns find a face of a chain
+            self.descend(PRODUCTS.max(self.places.len() as u64));
             self.sweep_on(SWEEPS_AFTER);
         }
     }

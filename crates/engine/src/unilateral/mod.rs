@@ -49,7 +49,7 @@ const TOLERANCE: f64 = 1e-11;
 const OF_RELATIONS: f64 = 1e-12;
 /// Sweeps over all contacts of a step, and products in the place of sweeps.
 const MOST_SWEEPS: u64 = 20_000;
-/// Sweeps after which forces are sought on the face that they have found, products with `D` of that search, and sweeps after it. These are a round, after
+/// Sweeps after which forces are sought on the face that they have found, products with `D` of that search, more where there are more contacts, and sweeps after it. These are a round, after
 /// which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
 const SWEEPS_BEFORE: u64 = 60;
 const PRODUCTS: u64 = 100;

@@ -107,21 +107,25 @@ impl LevelsForce {
     fn carry_out(&self, criterion: &Criterion, division: &Division, memory: &mut [f64], work: &mut Work) {
         let (wanted, mut unwanted) = (std::mem::take(&mut work.wanted), std::mem::take(&mut work.unwanted));
         let is_regrouped = |(greatest, _): &&(f64, u32)| *greatest < criterion.coarsen;
-        let regrouped = || unwanted.iter().filter(is_regrouped).map(|(_, point)| *point);
-        let grounds = (self.budget, *division);
-        if !work.verdict.holds(grounds, &memory[..self.stays()], &wanted, regrouped()) {
-            work.verdict.begin(grounds, &memory[..self.stays()], &wanted, regrouped());
+        let asked = &mut work.verdict.asked;
+        (asked.budget, asked.division) = (self.budget, Some(*division));
+        asked.before.clear();
+        asked.before.extend_from_slice(&memory[..self.stays()]);
+        asked.wanted.clone_from(&wanted);
+        asked.regrouped.clear();
+        asked.regrouped.extend(unwanted.iter().filter(is_regrouped).map(|(_, point)| *point));
+        if work.verdict.is_known() {
+            memory[..self.stays()].copy_from_slice(&work.verdict.after);
+        } else {
             for (_, point) in unwanted.iter().filter(is_regrouped) {
                 self.subdivide(memory, *point as usize, false);
             }
             self.spend(division, &wanted, &mut unwanted, memory, work);
             self.give_up_empty_points(memory, work);
-            // what an overdrawn budget regroups hangs on how much each point varies
-            let is_certain = memory[self.overload()] <= PATIENCE;
-            work.verdict.end(is_certain.then_some(&memory[..self.stays()]));
-        }
-        if let Some(after) = work.verdict.after() {
-            memory[..self.stays()].copy_from_slice(after);
+            // a budget counts by the rates that velocities ask for; one that is overdrawn regroups by how much each point varies
+            let is_certain =
+                (self.budget.is_none() || !division.asks_first()) && memory[self.overload()] <= PATIENCE;
+            work.verdict.keep(is_certain.then_some(&memory[..self.stays()]));
         }
         work.refresh(self, memory);
         (work.wanted, work.unwanted) = (wanted, unwanted);
@@ -235,61 +239,43 @@ impl LevelsForce {
     }
 }
 
-/// What a look came to, and on what grounds: the same grounds come to the same.
-#[derive(Clone, Debug, Default)]
-pub struct Verdict {
-    grounds: Option<(Option<f64>, Division)>,
-    /// What says who is at work, before.
+/// What a look follows from.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Grounds {
+    budget: Option<f64>,
+    division: Option<Division>,
+    /// What says who is at work.
     before: Vec<f64>,
     wanted: Vec<u32>,
     regrouped: Vec<u32>,
-    /// The same after; empty where that hangs on more.
+}
+
+/// What the last look came to, and on what grounds: the same grounds come to the same.
+#[derive(Clone, Debug, Default)]
+pub struct Verdict {
+    /// Of this look, and of the last one.
+    asked: Grounds,
+    grounds: Grounds,
+    /// What says who is at work, after; empty where that follows from more.
     after: Vec<f64>,
 }
 
 impl Verdict {
-    fn holds(
-        &self,
-        grounds: (Option<f64>, Division),
-        before: &[f64],
-        wanted: &[u32],
-        regrouped: impl Iterator<Item = u32>,
-    ) -> bool {
-        !self.after.is_empty()
-            && self.grounds == Some(grounds)
-            && self.wanted == wanted
-            && self.regrouped.iter().copied().eq(regrouped)
-            && self.before == before
+    fn is_known(&self) -> bool {
+        !self.after.is_empty() && self.asked == self.grounds
     }
 
-    fn begin(
-        &mut self,
-        grounds: (Option<f64>, Division),
-        before: &[f64],
-        wanted: &[u32],
-        regrouped: impl Iterator<Item = u32>,
-    ) {
-        self.grounds = Some(grounds);
-        self.before.clear();
-        self.before.extend_from_slice(before);
-        self.wanted.clear();
-        self.wanted.extend_from_slice(wanted);
-        self.regrouped.clear();
-        self.regrouped.extend(regrouped);
-    }
-
-    fn end(&mut self, after: Option<&[f64]>) {
+    fn keep(&mut self, after: Option<&[f64]>) {
+        std::mem::swap(&mut self.asked, &mut self.grounds);
         self.after.clear();
         self.after.extend_from_slice(after.unwrap_or(&[]));
     }
 
-    fn after(&self) -> Option<&[f64]> {
-        (!self.after.is_empty()).then_some(self.after.as_slice())
-    }
-
     pub fn bytes(&self) -> usize {
-        8 * (self.before.capacity() + self.after.capacity())
-            + 4 * (self.wanted.capacity() + self.regrouped.capacity())
+        let of = |grounds: &Grounds| {
+            8 * grounds.before.capacity() + 4 * (grounds.wanted.capacity() + grounds.regrouped.capacity())
+        };
+        of(&self.asked) + of(&self.grounds) + 8 * self.after.capacity()
     }
 }
 
