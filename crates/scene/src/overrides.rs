@@ -115,9 +115,10 @@ fn split(path: &str) -> Option<Vec<Step<'_>>> {
     Some(steps)
 }
 
-/// Whether what is left of a path and what it is set to are a table of a new name as a whole.
+/// Whether what is left of a path and what it is set to are a table of a new name as a whole; paths know no names in quotes.
 fn is_new(steps: &[Step], value: &Node) -> bool {
-    matches!(steps, [Step::Key(_)]) && matches!(value.content, Content::Table(_))
+    let is_name = |key: &str| !key.contains(['"', '\'']);
+    matches!(steps, [Step::Key(key)] if is_name(key)) && matches!(value.content, Content::Table(_))
 }
 
 struct Setting<'a> {

@@ -18,6 +18,8 @@ mod table;
 
 use std::path::PathBuf;
 
+use souple_table::readable;
+
 pub use database::Database;
 pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
@@ -75,25 +77,28 @@ impl SweepError {
     }
 }
 
-/// Digits in a row beyond which a number is told by its first ones: 64-bit numbers have 17 that matter.
+/// Digits beyond which a number is told by those that matter, with an exponent: 64-bit numbers have 17.
 const DIGITS: usize = 20;
 
-/// Words in which numbers of very many digits are cut short.
+/// Words in which numbers that are written out in very many digits have exponents. Names with as many are left.
 fn without_long_numbers(words: &str) -> String {
-    let mut short = String::with_capacity(words.len().min(1024));
-    let mut digits = 0;
-    for character in words.chars() {
-        let is_digit = character.is_ascii_digit();
-        if !is_digit && digits > DIGITS {
-            short.push('…');
+    let is_of_number = |character: char| character.is_ascii_digit() || character == '.';
+    let is_of_name = |character: char| character.is_alphanumeric() || character == '_';
+    let (mut short, mut rest, mut before) = (String::with_capacity(words.len().min(1024)), words, ' ');
+    while let Some(first) = rest.chars().next() {
+        let end = match is_of_number(first) {
+            true => rest.find(|character| !is_of_number(character)).unwrap_or(rest.len()),
+            false => first.len_utf8(),
+        };
+        let (part, after) = rest.split_at(end);
+        let is_long = part.chars().filter(char::is_ascii_digit).count() > DIGITS;
+        let is_apart = !is_of_name(before) && !after.starts_with(is_of_name);
+        match part.parse::<f64>().ok().filter(|_| is_long && is_apart) {
+            Some(number) if number.is_finite() => short += &readable(number),
+            Some(_) => short.extend(part.chars().take(DIGITS).chain(['…'])),
+            None => short += part,
         }
-        digits = if is_digit { digits + 1 } else { 0 };
-        if digits <= DIGITS {
-            short.push(character);
-        }
-    }
-    if digits > DIGITS {
-        short.push('…');
+        (before, rest) = (part.chars().last().unwrap_or(before), after);
     }
     short
 }
@@ -102,16 +107,18 @@ fn without_long_numbers(words: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Numbers that are read to the end stay; one of 300 digits is not echoed in full.
+    /// Numbers that are read to the end stay, as do names; of one of 300 digits the size is told.
     #[test]
     fn long_numbers_are_cut_short() {
-        assert_eq!(
-            without_long_numbers("from -1.5e300 to 12345678901234567890"),
-            "from -1.5e300 to 12345678901234567890"
-        );
-        let long = format!("{} and {}, 3", "1".repeat(300), "2".repeat(21));
-        let short = format!("{}… and {}…, 3", "1".repeat(20), "2".repeat(20));
-        assert_eq!(without_long_numbers(&long), short);
-        assert_eq!(without_long_numbers(&"7".repeat(300)), format!("{}…", "7".repeat(20)));
+        for as_it_is in [
+            "from -1.5e300 to 12345678901234567890",
+            "no run `2026112823015900000000_a`",
+            "Δ = 0.12345678901234567, 3",
+        ] {
+            assert_eq!(without_long_numbers(as_it_is), as_it_is);
+        }
+        let long = format!("{:.0} and -{}, 3 m", 1e200, "0.".to_owned() + &"0".repeat(24) + "1");
+        assert_eq!(without_long_numbers(&long), "1e200 and -1e-25, 3 m");
+        assert_eq!(without_long_numbers(&"7".repeat(400)), format!("{}…", "7".repeat(20)));
     }
 }

@@ -280,8 +280,8 @@ pub fn warn_of_settling(draft: &mut Draft) {
         let spec = body.spec.levels.as_ref()?;
         let settled = spec.criterion.settled.filter(|settled| *settled >= duration)?;
         Some(format!(
-            "{}: body `{}` has settled at {settled} s, and the run ends at {duration} s: the finest mesh is at work all the while; an earlier \
-             date would let it be coarse",
+            "{}: body `{}` has settled at {settled} s, and `run.duration` is {duration} s: within that the finest mesh is at work all the while; an earlier date would let it be \
+             coarse",
             draft.place(&spec.site),
             body.spec.name
         ))

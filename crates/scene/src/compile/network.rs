@@ -75,6 +75,13 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         draft.log.add(Code::NotFinite, &body.site, message, format!("numbers up to {}", readable(MODERATE)));
         return None;
     }
+    let is_fast = |velocity: Vec3| !velocity.to_array().iter().all(|number| number.abs() <= MODERATE);
+    if let Some(mass) = network.of_each(|group| group.velocity).position(is_fast) {
+        let message = format!("mass {mass} starts faster than can be computed with");
+        let expected = format!("a velocity of {} m/s at most", readable(MODERATE));
+        draft.log.add(Code::NotFinite, &body.site, message, expected);
+        return None;
+    }
     if points.is_empty() {
         draft.log.add(Code::EmptyRegion, &body.site, "the network has no masses", "at least one");
         return None;
@@ -254,7 +261,7 @@ fn law(
         if let Some(Value::Number(number)) = chosen.values.get(parameter.name)
             && number.abs() > MODERATE
         {
-            let message = format!("`{}` is {}: its square is no number", parameter.name, readable(number));
+            let message = format!("`{}` is {}: too large to compute with", parameter.name, readable(number));
             let expected = format!("{}, {} at most", parameter.expected(), readable(MODERATE));
             draft.log.add(Code::OutOfRange, chosen.site_of(parameter.name), message, expected);
             return None;

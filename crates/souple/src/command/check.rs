@@ -160,7 +160,8 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         // links that do nothing at first are not in what the first state tells
         let safe =
             networks.iter().filter(|network| network.system == index).filter_map(|network| network.safe_step);
-        let any = match safe.reduce(f64::min) {
+        let safe = safe.reduce(f64::min);
+        let any = match safe {
             None => "any step is stable about the first state".to_owned(),
             Some(safe) => format!(
                 "any step is stable about the first state, where what is stiff does not act yet; {safe:.3e} s is safe whatever acts"
@@ -169,7 +170,10 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         let stable = longest.map_or(any, |step| {
             let of =
                 system["stiffest_force"].as_str().map_or_else(String::new, |name| format!(", by `{name}`"));
-            format!("longest stable step {step:.3e} s{of}")
+            let whatever = safe.filter(|safe| *safe < step);
+            let whatever =
+                whatever.map_or_else(String::new, |safe| format!("; {safe:.3e} s is safe whatever acts"));
+            format!("longest stable step {step:.3e} s{of}{whatever}")
         });
         print_line(format_args!(
             "  system {}: {} at {:.3e} s; {stable}",

@@ -169,7 +169,7 @@ impl Kind {
                 let seconds =
                     as_quantity(value, "s").filter(|seconds| *seconds > 0.0 && is_moderate(seconds));
                 Some(seconds.ok_or_else(|| {
-                    SweepError::value("plan.duration", value.to_string(), "seconds above 0")
+                    SweepError::value("plan.duration", value.to_string(), "seconds above 0, 1e100 at most")
                 })?)
             }
         };

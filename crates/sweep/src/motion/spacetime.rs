@@ -143,6 +143,7 @@ impl<'a> Search<'a> {
         while iterations < self.motion.iterations {
             iterations += 1;
             self.lengths.fill(0.0);
+            self.why = None;
             let turns = (0..self.windows.len()).map(|at| {
                 let window = self.windows[at].clone();
                 self.turn(&mut now, window, iterations == 1)
@@ -376,7 +377,7 @@ impl<'a> Search<'a> {
         let (periods, probe) = told.max_by_key(|(periods, _)| *periods)?;
         let time = (linear.window.start + periods) as f64 * self.course.world.model().period;
         Some(format!(
-            "commands before {} s change nothing of `{probe}`, and later ones do: something stops the motion by then, as a wall or an obstacle does",
+            "commands before {} s change nothing of `{probe}`, and later ones do: what they do is lost by then, as where a wall or an obstacle stops the motion, or drag does",
             readable(time)
         ))
     }

@@ -1,11 +1,12 @@
 //! Rigid bodies whose masses start at velocities that no rigid body has.
 
 use souple_math::Vec3;
+use souple_table::four_digits;
 
 use super::super::bodies::Placed;
 use super::super::{Draft, start};
 use super::constraints::rigid_groups;
-use crate::spec::network::{ConstraintKind, Network};
+use crate::spec::network::{ConstraintKind, MassGroup, Network};
 
 /// Masses that part or near by less than this share of how fast they are start as of one body: rounding of what turns them.
 const TOGETHER: f64 = 1e-6;
@@ -19,8 +20,8 @@ pub fn warn_of_starts(draft: &mut Draft) {
 
 fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
     // what the whole network has besides is a motion of a rigid body
-    let velocities: Vec<Vec3> = network.of_each(|group| group.velocity).collect();
-    let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
+    let velocity = |group: &MassGroup| if group.is_fixed { Vec3::ZERO } else { group.velocity };
+    let velocities: Vec<Vec3> = network.of_each(velocity).collect();
     let rest = &body.mesh.points;
     let places = start::places(body.spec.start.as_ref(), rest);
     let parts = |ends: &[u32; 2]| {
@@ -28,7 +29,7 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
         let along = (places[b] - places[a]).try_normalised()?;
         let speed = along.dot(velocities[b] - velocities[a]).abs();
         let size = velocities[a].length().max(velocities[b].length());
-        (!is_fixed[a] && !is_fixed[b] && speed > TOGETHER * size).then_some((*ends, speed))
+        (speed > TOGETHER * size).then_some((*ends, speed))
     };
     let rigid = network.constraints.iter().filter(|spec| matches!(spec.kind, Some(ConstraintKind::Rigid)));
     rigid.filter(|spec| spec.augmented.is_none()).find_map(|spec| {
@@ -40,9 +41,10 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
         };
         let cure = if spec.of.is_empty() { "`of`, with the groups that are bodies of their own," } else { "a group for each body" };
         Some(format!(
-            "{}: `rigid` makes one body of {of}, and masses {a} and {b} start at {speed:.3} m/s along the rod between them, which the first \
+            "{}: `rigid` makes one body of {of}, and masses {a} and {b} start at {} m/s along the rod between them, which the first \
              step takes away: {cure} would keep it",
-            draft.place(&spec.kind_site)
+            draft.place(&spec.kind_site),
+            four_digits(speed)
         ))
     })
 }

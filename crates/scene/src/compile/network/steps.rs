@@ -12,6 +12,7 @@ use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
 use souple_models::network::relations::Relation;
 use souple_models::network::{Augmented, Constraints, Crowd, Keeping, Links};
+use souple_table::four_digits;
 
 use super::super::Draft;
 use super::super::bodies::Placed;
@@ -149,10 +150,11 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
         (false, false) => format!("of neighbours as in a dense heap, {},", met.join(" and ")),
     };
     Some(format!(
-        "{}: K + 2Z {whose} at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
+        "{}: K + 2Z {whose} at mass {mass} of network `{}` is {} of what a step of {timestep} s bears: \
          the network may be unstable; a step of {:.3e} s is safe whatever states they are in, and a longer one may be",
         draft.place(&body.spec.site),
         body.spec.name,
+        four_digits(share),
         timestep / share,
     ))
 }
