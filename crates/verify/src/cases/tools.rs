@@ -93,7 +93,7 @@ const LIVER: Case = Case {
     reference: 0.0,
     tolerance: Tolerance::Absolute(0.077),
     source: "V-43: a twentieth of the greatest force, 1.54 N",
-    mutation: r#"hands.right.coupling={ stiffness = "4000 N/m", damping = 2, limit = "5 N" }"#,
+    mutation: r#"hands.right.coupling={ stiffness = "16000 N/m", damping = 2, limit = "5 N" }"#,
 };
 
 /// A touch with all that smooths.
