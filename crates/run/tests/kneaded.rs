@@ -16,7 +16,7 @@ steps_per_period = 10
 lattice = { origin = [0.3, 0, 1], spacing = 1, counts = [3, 3, 2] }
 mass = 1
 [[networks.clay.crowds]]
-law = { name = "cohesion", distance = 1, peak = 1.1, range = 1.4, repulsion = 10000, cohesion = 10000, damping = 40 }
+law = { name = "cohesion", distance = 1, peak = 1.1, range = 1.4, cohesion = 10000, damping = 40 }
 [shapes.ground]
 shape = { name = "plane", point = [0, 0, 0], normal = [0.1, 0, 1] }
 [[contacts]]

@@ -62,7 +62,7 @@ fn stiffness_of(hierarchy: &Hierarchy, matter: &Matter, level: usize) -> Result<
 }
 
 /// Of each level: its compliance over that of the finest mesh, by which its moduli are to be multiplied for both to yield
-/// alike; 1 for the finest.
+/// alike; 1 for the finest, and at most: a coarser mesh is stiffer as it is.
 pub fn shares_of_compliance(hierarchy: &Hierarchy, matter: &Matter, masses: &[f64]) -> Vec<f64> {
     let mut shares = vec![1.0; hierarchy.level_count()];
     if hierarchy.level_count() == 1 {
@@ -80,9 +80,9 @@ pub fn shares_of_compliance(hierarchy: &Hierarchy, matter: &Matter, masses: &[f6
             }
         }
         let share = compliance(hierarchy, matter, level, &loads) / finest;
-        // a body too small to bend has none
+        // a body too small to bend has none; what hangs on next to no matter yields without end, and says nothing of the rest
         if share.is_finite() && share > 0.0 {
-            shares[level] = share;
+            shares[level] = share.min(1.0);
         }
     }
     shares

@@ -17,7 +17,7 @@ use super::motion::motion;
 use crate::diagnostic::Site;
 use crate::reader::Chosen;
 use crate::spec::boundary::MotionSpec;
-use crate::spec::contact::Against;
+use crate::spec::contact::{Against, Detect};
 
 /// Dates over the run at which it is looked how fast a hand means to move, beside those of its key frames.
 const SAMPLES: u32 = 2000;
@@ -52,12 +52,18 @@ fn doubts(draft: &Draft) -> Vec<String> {
             continue;
         }
         let tool = (shape.shape.as_ref(), shape.motion.as_ref(), &shape.site);
-        warnings.extend(inside(draft, &mut locators, &contact.body, &format!("shape `{name}`"), tool));
+        warnings.extend(inside(
+            draft,
+            &mut locators,
+            (&contact.body, contact.detect),
+            &format!("shape `{name}`"),
+            tool,
+        ));
     }
     for hand in &draft.spec.hands {
         let tool = (hand.tool.as_ref(), hand.motion.as_ref(), &hand.site);
         let what = format!("the tool of hand `{}`", hand.name);
-        warnings.extend(inside(draft, &mut locators, &hand.touch.body, &what, tool));
+        warnings.extend(inside(draft, &mut locators, (&hand.touch.body, hand.touch.detect), &what, tool));
     }
     for (info, spec) in draft.hands.iter().filter_map(|info| {
         let spec = draft.spec.hands.iter().find(|hand| hand.name == info.name)?;
@@ -75,11 +81,11 @@ fn doubts(draft: &Draft) -> Vec<String> {
 /// A tool, what moves it, and where it is written.
 type Tool<'a> = (Option<&'a Chosen<BuildShape>>, Option<&'a MotionSpec>, &'a Site);
 
-/// Of a tool that starts with all of its surface inside the body that it is to touch.
+/// Of a tool that starts with all of its surface inside the body that it is to touch, or with its middle where triangles are touched from outside.
 fn inside<'a>(
     draft: &'a Draft,
     locators: &mut Locators<'a>,
-    body: &str,
+    (body, detect): (&str, Detect),
     what: &str,
     (shape, moves, site): Tool,
 ) -> Option<String> {
@@ -98,14 +104,24 @@ fn inside<'a>(
     let is_inside =
         |place: &Vec3| locator.carrier(*place + offset).is_some_and(|location| location.distance == 0.0);
     let points = &outline.surface.points;
-    (!points.is_empty() && points.iter().all(is_inside)).then(|| {
-        format!(
-            "{}: {what} starts inside body `{}`, where no surface is: it feels nothing until it comes out, and is then on the wrong side of it; \
-             start it outside",
-            draft.place(site),
-            body.spec.name
-        )
-    })
+    if points.is_empty() {
+        return None;
+    }
+    let (place, name) = (draft.place(site), &body.spec.name);
+    let middle = points.iter().copied().sum::<Vec3>() / points.len() as f64;
+    if points.iter().all(is_inside) {
+        Some(format!(
+            "{place}: {what} starts inside body `{name}`, where no surface is: it feels nothing until it comes out, and is then on the wrong side of it; \
+             start it outside"
+        ))
+    } else if detect == Detect::Triangles && is_inside(&middle) {
+        Some(format!(
+            "{place}: {what} starts with its middle inside body `{name}`: triangles that face away from it do not push it, and it may feel nothing until it \
+             has come out; start it outside"
+        ))
+    } else {
+        None
+    }
 }
 
 /// What of a coupling is too stiff for the arm that holds its device.

@@ -16,7 +16,8 @@ pub const ENTRY: LinkEntry = LinkEntry {
             .or(Value::Number(0.0)),
         Parameter::number("peak", "m", Range::POSITIVE, "S2: of the strongest pull"),
         Parameter::number("range", "m", Range::POSITIVE, "S3: no force beyond"),
-        Parameter::number("repulsion", "N/m", Range::NOT_NEGATIVE, "k_r below S1").or(Value::Number(0.0)),
+        Parameter::number("repulsion", "N/m", Range::NOT_NEGATIVE, "k_r below S1, of a law with one")
+            .or(Value::Number(0.0)),
         Parameter::number("cohesion", "N/m", Range::POSITIVE, "k_a about the distance at rest"),
         DAMPING,
     ],
@@ -39,6 +40,14 @@ fn cohesion(making: &Making) -> Result<Piecewise, LinkError> {
     let fade = pull * (peak - distance) / (range - peak);
     let damping = number("damping") / making.timestep;
     if hard == 0.0 {
+        let repulsion = number("repulsion");
+        if repulsion > 0.0 {
+            return Err(LinkError::Unfit {
+                parameter: "repulsion",
+                value: repulsion.to_string(),
+                expected: "it acts below `hard`, which is none: give that too, or leave this out".to_owned(),
+            });
+        }
         return Piecewise::new(&[peak, range], &[-pull, fade, 0.0], (distance, 0.0), damping);
     }
     Piecewise::new(&[hard, peak, range], &[-number("repulsion"), -pull, fade, 0.0], (distance, 0.0), damping)
