@@ -71,6 +71,11 @@ fn parameters_that_laws_do_not_name_are_refused() {
             "`parameters.fare` changes nothing: its states name `k`, `far` alone",
         ),
         (
+            law("name = \"cohesion\", distance = 1, peak = 1.1, range = 1.5, repulsion = 10, cohesion = 1"),
+            "law",
+            "`repulsion` is 10, but it acts below `hard`, which is none",
+        ),
+        (
             law("name = \"formula\", push = \"-k*(D - L0)\", parameters = { k = nan }"),
             "law.parameters",
             "NaN is no finite number",

@@ -33,13 +33,18 @@ fn assert_says_alone(text: &str, words: &str) {
     assert!(said.len() == 1 && said[0].contains(words) && said[0].contains("scene.toml:"), "{said:?}");
 }
 
-/// A tool that starts inside its body touches nothing, one outside or halfway does; a shape as well as a hand's tool.
+/// A tool that starts inside its body touches nothing, nor one whose middle does where triangles are touched; one outside does. A shape as well as a hand's
+/// tool.
 #[test]
 fn tools_inside_are_told() {
     assert_eq!(warnings(HELD), Vec::<String>::new());
     assert_says_alone(
         &HELD.replace("[0.5, 0.16, 0.05]", "[0.5, 0.05, 0.05]"),
         "the tool of hand `right` starts inside body `bar`",
+    );
+    assert_says_alone(
+        &HELD.replace("[0.5, 0.16, 0.05]", "[0.5, 0.09, 0.05]"),
+        "the tool of hand `right` starts with its middle inside body `bar`",
     );
     // where it is led to as it starts counts
     let led = HELD.replace("[[0, 0, 0], [0, -0.02, 0]]", "[[0, -0.11, 0], [0, -0.12, 0]]");
@@ -51,7 +56,10 @@ fn tools_inside_are_told() {
             &HELD[..hands]
         )
     };
-    assert_eq!(warnings(&shape("[0.55, 0.13, 0.05]")), Vec::<String>::new());
+    // points are pushed out whichever side they are on
+    for outside in ["[0.55, 0.13, 0.05]", "[0.55, 0.09, 0.05]"] {
+        assert_eq!(warnings(&shape(outside)), Vec::<String>::new());
+    }
     assert_says_alone(&shape("[0.55, 0.05, 0.05]"), "shape `ball` starts inside body `bar`");
 }
 
