@@ -174,7 +174,10 @@ impl LevelsForce {
 
     /// A point whose matter finer points stand for has nothing to move: it is subdivided too. One way each level stands for all of its own.
     pub(super) fn give_up_empty_points(&self, memory: &mut [f64], work: &mut Work) {
-        while self.coupling == Coupling::Transpose {
+        if self.coupling == Coupling::OneWay {
+            return;
+        }
+        loop {
             work.refresh(self, memory);
             let is_empty = |point: &&u32| {
                 let point = **point as usize;
