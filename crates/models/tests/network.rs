@@ -29,10 +29,8 @@ fn values(entry: &LinkEntry) -> Values {
     let numbers = text(&[("k", "1 kN/m"), ("c", "3")]);
     let states = text(&[("free", "0"), ("touching", "k * (1 - D) - c * V")]);
     let transitions = text(&[("free -> touching", "D < 1"), ("touching -> free", "D > 1")]);
-    let words = text(&[
-        ("free", "CHK, 0; INF, D, 1 -> touching"),
-        ("touching", "CHK, 1000; CHZ, 3; SUP, D, 1 -> free"),
-    ]);
+    let words =
+        text(&[("free", "CHK, 0; INF, D, 1 -> touching"), ("touching", "CHK, k; CHZ, c; SUP, D, 1 -> free")]);
     let mut values = Values::new();
     for parameter in entry.parameters {
         let value = match parameter.name {
@@ -566,7 +564,7 @@ fn texts_of_laws_are_checked() {
     let states = |state: &str| build("conditional", &[("states", &[("a", state), ("b", "")])], &[]);
     let automaton = |texts: &[(&'static str, &[(&str, &str)])]| build("finite_state", texts, &[]);
     let formula =
-        |parameters: &[(&str, &str)]| build("formula", &[("parameters", parameters)], &[("push", "-D")]);
+        |parameters: &[(&str, &str)]| build("formula", &[("parameters", parameters)], &[("push", "-k * D")]);
     for taken in [
         network("spring(1 kN/m) - (damper(10 N s/m) | slider(5 N))", &[]),
         network("spring(k) - damper(2 * z)", &[("k", "1 kN/m"), ("z", "3")]),
