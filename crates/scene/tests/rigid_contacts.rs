@@ -3,7 +3,7 @@
 use souple_engine::{Force, Pair, World};
 use souple_models::network::{RigidBalls, SidedConstraints};
 
-use crate::worlds::{assert_goes_on, read, started};
+use crate::worlds::{assert_goes_on, read, started, stepped};
 
 /// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
 const FALLING: &str = r#"
@@ -476,9 +476,12 @@ plane = { normal = [0, 0, 1] }
 sense = "at_least"
 "#;
     let heights = |settings: &[&str]| {
-        let mut world = started(RESTING, settings);
-        (0..100).for_each(|_| world.step().unwrap());
-        world.rows(0).positions.iter().map(|place| place.z).collect::<Vec<_>>()
+        stepped(started(RESTING, settings), 100)
+            .rows(0)
+            .positions
+            .iter()
+            .map(|place| place.z)
+            .collect::<Vec<_>>()
     };
     // to 1e-7 of what a step would sink, half a millimetre
     let is_at =

@@ -231,17 +231,17 @@ impl ContactSystem {
 
     /// How far along the direction the first force comes to a limit, at which place, and what is free there then.
     fn first_limit(&self, face: &Face) -> Option<(f64, usize, Free)> {
-        let limit_at = |place: &usize| {
-            let by = face.direction[*place];
+        let limit_at = |place: usize| {
+            let by = face.direction[place];
             if by == Vec3::ZERO {
                 return None;
             }
-            let force = self.force_at(*place);
-            let (way, left) = match self.places[*place].law {
+            let force = self.force_at(place);
+            let (way, left) = match self.places[place].law {
                 Law::Bounds(limit) => ((limit.copysign(by.x) - force.x) / by.x, Free::Nothing),
                 Law::Cone(friction) => {
                     let apex = if by.x < 0.0 { force.x / -by.x } else { f64::INFINITY };
-                    let cone = way_to_cone(force, by, friction).filter(|_| face.free[*place] == Free::All);
+                    let cone = way_to_cone(force, by, friction).filter(|_| face.free[place] == Free::All);
                     match cone {
                         Some(way) if way < apex * (1.0 - APEX) => (way, Free::Normal),
                         _ => (apex, Free::Nothing),
@@ -249,10 +249,10 @@ impl ContactSystem {
                 }
             };
             // a force that sweeps or a way before has left beyond its limit is there
-            (way < f64::INFINITY).then_some((way.max(0.0), *place, left))
+            (way < f64::INFINITY).then_some((way.max(0.0), place, left))
         };
-        let places = (0..self.places.len()).filter_map(|place| limit_at(&place));
-        places.reduce(|first, next| if next.0 < first.0 { next } else { first })
+        let limits = (0..self.places.len()).filter_map(limit_at);
+        limits.reduce(|first, next| if next.0 < first.0 { next } else { first })
     }
 
     /// Holds a force that has come to a limit there.

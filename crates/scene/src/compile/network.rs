@@ -68,15 +68,14 @@ pub struct PlacedLinks {
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
     let places = network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.place(i)));
     let points: Vec<Vec3> = places.map(|place| body.placement.place(place)).collect();
-    let is_far = |point: &Vec3| !point.to_array().iter().all(|number| number.abs() <= MODERATE);
-    if let Some(point) = points.iter().position(is_far) {
+    let is_beyond = |vector: &Vec3| !vector.to_array().iter().all(|number| number.abs() <= MODERATE);
+    if let Some(point) = points.iter().position(is_beyond) {
         let place = points[point].to_array().map(readable).join(", ");
         let message = format!("mass {point} starts at ({place}) m, where nothing can be computed");
         draft.log.add(Code::NotFinite, &body.site, message, format!("numbers up to {}", readable(MODERATE)));
         return None;
     }
-    let is_fast = |velocity: Vec3| !velocity.to_array().iter().all(|number| number.abs() <= MODERATE);
-    if let Some(mass) = network.of_each(|group| group.velocity).position(is_fast) {
+    if let Some(mass) = network.of_each(|group| group.velocity).position(|velocity| is_beyond(&velocity)) {
         let message = format!("mass {mass} starts faster than can be computed with");
         let expected = format!("a velocity of {} m/s at most", readable(MODERATE));
         draft.log.add(Code::NotFinite, &body.site, message, expected);
