@@ -25,7 +25,7 @@ mod view;
 use std::fmt;
 
 use serde_json::{Value, json};
-use souple_run::{Control, Options};
+use souple_run::{Control, Options, Status};
 use souple_scene::Scene;
 use souple_table::counted;
 
@@ -157,6 +157,11 @@ pub const BENCHES: &[Bench] = &[
         name: "frames_growth",
         what: "a step of 144 rigid frames by the number of points: time of a thousand of them, memory, how far either is from growing as they do [us/step]",
         run: |effort| frames::growth("frames_growth", effort),
+    },
+    Bench {
+        name: "frames_tissues",
+        what: "two organs of finite elements and a pad, a ligament and a sheet of frames between them, pulled apart, one solve of 10 ms [ms/step]",
+        run: |effort| frames::tissues("frames_tissues", effort),
     },
     Bench {
         name: "fill_100k",
@@ -467,6 +472,9 @@ fn value_of(scene: Scene, steps: u64, probe: &str, component: usize) -> Result<f
     let options = Options { steps: Some(steps), ..Options::default() };
     let outcome =
         souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
+    if outcome.report.status != Status::Done {
+        return Err(outcome.report.warnings.join("; "));
+    }
     let trace = outcome.traces.iter().find(|trace| trace.name == probe).ok_or("the probe is missing")?;
     trace
         .last()

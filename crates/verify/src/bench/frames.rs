@@ -1,11 +1,10 @@
 //! Steps of a bar that frames carry, with what one solve a step leaves of the answer, and the error of the bar's sag in equilibrium.
 
-use souple_run::{Control, Options, Status};
 use souple_scene::Scene;
 
 use super::frames_table::row;
 use super::timing::{Held, Timed, Timing, as_it_is, scene, with_threads};
-use super::{Effort, Figure};
+use super::{Effort, Figure, value_of};
 
 /// A bar and its frames.
 #[derive(Clone, Copy)]
@@ -79,14 +78,7 @@ fn timing(settings: &[String], samples: usize) -> Timing<'_> {
 
 /// How far the tip is down after so many steps, all of which were made [m].
 pub fn tip_of(scene: Scene, steps: u64) -> Result<f64, String> {
-    let options = Options { steps: Some(steps), ..Options::default() };
-    let outcome =
-        souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
-    if outcome.report.status != Status::Done {
-        return Err(outcome.report.warnings.join("; "));
-    }
-    let trace = outcome.traces.iter().find(|trace| trace.name == "tip").ok_or("the probe is missing")?;
-    trace.last().and_then(|value| value.get(1)).copied().ok_or_else(|| "the probe is empty".to_owned())
+    value_of(scene, steps, "tip", 1)
 }
 
 pub fn steps(name: &str, size: Size, effort: Effort) -> Result<Vec<Figure>, String> {
@@ -126,6 +118,34 @@ pub fn steps(name: &str, size: Size, effort: Effort) -> Result<Vec<Figure>, Stri
         figures.extend(timed.iter().map(|timed| timed.steps_per_second(&name, &held)));
     }
     Ok(figures)
+}
+
+/// A step is to take no longer than it lasts [ms].
+const TISSUES_PERIOD: f64 = 10.0;
+
+/// Steps of the scene `tissues` while its upper organ is led up.
+pub fn tissues(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    const STEPS: u64 = 50;
+    let settings = [format!("systems.main.stepper={CONVERGED}")];
+    // of the lower organ, which nothing leads but what is between the two
+    let risen = |settings: &[String]| value_of(scene("tissues", settings)?, STEPS, "lower", 1);
+    let held = Held {
+        error: (risen(&[])? / risen(&settings)? - 1.0).abs(),
+        error_of: format!(
+            "way of the lower organ after {STEPS} steps of one solve, next to Newton's method to 1e-8"
+        ),
+        baseline: Some(TISSUES_PERIOD),
+    };
+    let samples = effort.choose(5, 15);
+    let timing = Timing {
+        scene: "tissues",
+        settings: &[],
+        prepare: as_it_is,
+        warm_up: 5,
+        samples,
+        steps_per_sample: 4,
+    };
+    Ok(timing.run()?.iter().map(|timed| timed.milliseconds_per_step(name, &held)).collect())
 }
 
 /// Cells of the bar along x, y and z, each time twice as many, of eight points each.

@@ -697,17 +697,6 @@ pub(super) const CASES: &[Case] = &[
         ..STRAPS
     },
     Case {
-        id: "frames_tissues_in_real_time",
-        what: "a step of 10 ms of two organs and what is between them in less than 10 ms, one thread",
-        settings: &["run.duration=0.5"],
-        reading: Reading::StepMilliseconds,
-        reference: 10.0,
-        tolerance: Tolerance::AtMost,
-        source: "real time; a figure of the machine, of which it takes half",
-        mutation: "bodies.upper.mesh.cells=[14, 6, 14]",
-        ..TISSUES
-    },
-    Case {
         id: "frames_tissue_gains_nothing",
         capabilities: &["BOS-9", "BOS-6"],
         what: "the greatest energy of two tied organs of which one is thrown, over what they begin with",
