@@ -17,6 +17,7 @@ mod measure;
 mod modules;
 mod overrides;
 mod parameters;
+pub mod path;
 mod plan_file;
 mod reader;
 mod scene;

@@ -1,6 +1,6 @@
 //! Values set from the command line: `--set bodies.bar.material.youngs_modulus="2 MPa"`.
 //!
-//! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
+//! A path names keys by `.`, those that are more than a word in quotes, and items of lists by `[index]`. A value is read as TOML, or as text where it is none
 //! (`5ms`, `linear`); nothing behind the `=` takes what is there out. Keys that may be written can be set even where the scene leaves them out, and a whole item behind the
 //! last one of a list, or a whole table of a new name among bodies, probes and the like; parts are set of those that are there, and of the system
 //! `main` that a scene has where it writes none. Files are relative to the current folder, as everything on the command line is.
@@ -10,6 +10,7 @@ use std::path::PathBuf;
 use crate::diagnostic::{Code, Fault, Log, Site};
 use crate::document::{Content, Entry, Node, Table, parse_value};
 use crate::keys::{Keys, Shape, did_you_mean, one_of};
+use crate::path::{self, Step};
 use crate::source::{Place, Source, Sources};
 use crate::spec::SCENE;
 use crate::spec::world::{DEFAULT_STEPPER, DEFAULT_SYSTEM};
@@ -42,12 +43,6 @@ pub fn within<'a>(path: &str, sources: &'a Sources) -> impl Iterator<Item = &'a 
     settings.filter(is_within)
 }
 
-/// A step of a path.
-enum Step<'a> {
-    Key(&'a str),
-    Index(usize),
-}
-
 /// Sets what `overrides` (`path=value`) say in a document.
 pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, log: &Log) {
     for text in overrides {
@@ -62,13 +57,13 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
         let node = parse_value(value, source, path.len() + 1);
         let place = Place { source, start: 0, end: path.len() };
         let path = path.trim();
-        let Some(steps) = split(path) else {
+        let Some(steps) = path::steps(path) else {
             let site = Site { place, path: path.to_owned() };
             log.add(
                 Code::BadOverride,
                 &site,
                 "this is no path",
-                "keys with dots, such as bodies.bar.pins[0].axes",
+                "keys with dots, in quotes where they are more than a word, such as bodies.bar.pins[0].axes",
             );
             continue;
         };
@@ -96,29 +91,9 @@ fn write_default_system(document: &mut Table, place: Place) {
     document.entries.push(entry("systems", Content::Table(Table { entries: vec![system] })));
 }
 
-/// The steps of a path; `None` where it is malformed.
-fn split(path: &str) -> Option<Vec<Step<'_>>> {
-    let mut steps = Vec::new();
-    for part in path.split('.') {
-        let (key, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
-        if key.is_empty() {
-            return None;
-        }
-        steps.push(Step::Key(key));
-        let mut rest = indices;
-        while !rest.is_empty() {
-            let (index, after) = rest.strip_prefix('[')?.split_once(']')?;
-            steps.push(Step::Index(index.parse().ok()?));
-            rest = after;
-        }
-    }
-    Some(steps)
-}
-
-/// Whether what is left of a path and what it is set to are a table of a new name as a whole; paths know no names in quotes.
+/// Whether what is left of a path and what it is set to are a table of a new name as a whole.
 fn is_new(steps: &[Step], value: &Node) -> bool {
-    let is_name = |key: &str| !key.contains(['"', '\'']);
-    matches!(steps, [Step::Key(key)] if is_name(key)) && matches!(value.content, Content::Table(_))
+    matches!((steps, &value.content), ([Step::Key(_)], Content::Table(_)))
 }
 
 struct Setting<'a> {
@@ -149,7 +124,7 @@ impl Setting<'_> {
                 (Some(Content::Table(table)), Step::Key(name)) => {
                     table.get_mut(name).map(|node| &mut node.content)
                 }
-                (Some(Content::List(items)), Step::Index(index)) => {
+                (Some(Content::List(items)), Step::Item(index)) => {
                     items.get_mut(*index).map(|node| &mut node.content)
                 }
                 _ => None,
@@ -161,7 +136,7 @@ impl Setting<'_> {
                 table.entries.retain(|entry| entry.key != *name);
                 table.entries.len() < count
             }
-            (Some(Content::List(items)), Step::Index(index)) if *index < items.len() => {
+            (Some(Content::List(items)), Step::Item(index)) if *index < items.len() => {
                 items.remove(*index);
                 true
             }
@@ -221,7 +196,7 @@ impl Setting<'_> {
     fn set_within(&self, node: &mut Node, shape: Option<Shape>, steps: &[Step], value: Node) {
         match (&mut node.content, steps) {
             (_, []) => *node = value,
-            (Content::List(items), [Step::Index(index), rest @ ..]) => {
+            (Content::List(items), [Step::Item(index), rest @ ..]) => {
                 let count = items.len();
                 match items.get_mut(*index) {
                     Some(item) => {
@@ -279,7 +254,7 @@ impl Setting<'_> {
             (content, [step, ..]) => {
                 let wanted = match step {
                     Step::Key(name) => format!("the key `{name}`"),
-                    Step::Index(index) => format!("item {index}"),
+                    Step::Item(index) => format!("item {index}"),
                 };
                 self.refuse(
                     format!("`{}` asks {} for {wanted}", self.path, content.kind()),
@@ -329,16 +304,28 @@ mod tests {
     #[test]
     fn new_tables_are_added() {
         let text = "[world]\nperiod = 1\n[bodies.a]\ndrag = 1\n";
-        let overrides =
-            ["bodies.b={ drag = 2 }", "bodies.b.drag=3", "probes.new={body=\"a\",quantity=\"position\"}"];
+        let overrides = [
+            "bodies.b={ drag = 2 }",
+            "bodies.b.drag=3",
+            "bodies.\"c.d\"={ drag = 4 }",
+            "bodies.'c.d'.drag=5",
+            "probes.new={body=\"a\",quantity=\"position\"}",
+        ];
         let (table, faults) = set(text, &overrides);
         assert_eq!(faults, 0);
         let of = |kind: &str| table.get(kind).and_then(Node::as_table).expect("a table").clone();
-        assert_eq!(of("bodies").keys().collect::<Vec<_>>(), ["a", "b"]);
+        assert_eq!(of("bodies").keys().collect::<Vec<_>>(), ["a", "b", "c.d"]);
         let added = of("bodies").get("b").and_then(Node::as_table).expect("a body").clone();
         assert_eq!(added.get("drag").map(|node| &node.content), Some(&Content::Integer(3)));
         assert_eq!(of("probes").keys().collect::<Vec<_>>(), ["new"]);
-        for bad in ["bodies.b=2", "probes.new=position", "probes.new.body=a", "worlds.b={}", "world.b={}"] {
+        for bad in [
+            "bodies.b=2",
+            "bodies.\"=={}",
+            "probes.new=position",
+            "probes.new.body=a",
+            "worlds.b={}",
+            "world.b={}",
+        ] {
             assert_eq!(set(text, &[bad]).1, 1, "{bad}");
         }
     }

@@ -25,7 +25,6 @@ pub use fit::{Fit, Found, Search, Unknown};
 pub use least_squares::Ending;
 pub use motion::{
     Attempt, Cost, FoundMotion, Gain, KeyState, Kind, Motion, Planner, Seen, Spacetime, Watch, When, Windows,
-    with_unit,
 };
 pub use state_space::{FoundTable, Span, Tabulation, Tabulator};
 pub use study::{Graph, Plan, Study};

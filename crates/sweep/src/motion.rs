@@ -20,6 +20,7 @@ use std::path::PathBuf;
 
 use souple_engine::Interruption;
 use souple_io::Column;
+use souple_table::with_unit;
 
 pub(crate) use self::course::whole;
 pub(crate) use self::slopes::{Coordinate, coordinates};
@@ -211,11 +212,6 @@ impl KeyState {
             [low, high] => format!("{low} to {}", with_unit(high)),
         }
     }
-}
-
-/// A number and its unit, of which there may be none.
-pub fn with_unit(number: &str, unit: &str) -> String {
-    if unit.is_empty() { number.to_owned() } else { format!("{number} {unit}") }
 }
 
 /// What a motion is sought with.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use souple_scene::path::{Step, steps};
 use toml::de::{DeArray, DeTable};
 
 use crate::SweepError;
@@ -11,13 +12,6 @@ use crate::SweepError;
 pub(crate) struct Written {
     path: PathBuf,
     text: String,
-}
-
-/// A step on the way to a value.
-#[derive(Debug, PartialEq)]
-enum Step<'a> {
-    Key(&'a str),
-    Item(usize),
 }
 
 impl Written {
@@ -33,12 +27,13 @@ impl Written {
     }
 }
 
-/// Line and column, from 1, of what a path such as `plan.keys[2].probe` leads to: of the last of its keys that is there, `None` where none is.
+/// Line and column, from 1, of what a path such as `plan.keys[2].probe` leads to: of the last of its keys that is there, `None` where none is, or
+/// it is no path.
 fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let table = DeTable::parse(text).ok()?;
     let mut at = None;
     let (mut tables, mut items) = (Some(table.get_ref()), None::<&DeArray>);
-    for step in steps(path) {
+    for step in steps(path)? {
         let (start, value) = match step {
             Step::Key(name) => {
                 let found = tables.and_then(|table| table.iter().find(|(key, _)| key.get_ref() == name));
@@ -57,27 +52,6 @@ fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let before = text.get(..at?)?;
     let line = before.rsplit('\n').next().unwrap_or_default();
     Some((before.matches('\n').count() + 1, line.chars().count() + 1))
-}
-
-/// The steps of a path: keys between dots, those with dots in quotes, and numbers of items in brackets.
-fn steps(path: &str) -> Vec<Step<'_>> {
-    let (mut steps, mut left) = (Vec::new(), path);
-    while !left.is_empty() {
-        if let Some((key, rest)) = left.strip_prefix('"').and_then(|left| left.split_once('"')) {
-            steps.push(Step::Key(key));
-            left = rest;
-        } else if let Some((number, rest)) = left.strip_prefix('[').and_then(|left| left.split_once(']')) {
-            let Ok(index) = number.parse() else { break };
-            steps.push(Step::Item(index));
-            left = rest;
-        } else {
-            let end = left.find(['.', '[']).unwrap_or(left.len()).max(1);
-            steps.push(Step::Key(&left[..end]));
-            left = &left[end..];
-        }
-        left = left.strip_prefix('.').unwrap_or(left);
-    }
-    steps
 }
 
 #[cfg(test)]
@@ -99,7 +73,7 @@ mod tests {
             ("other", None),
             ("runs.csv, line 1", None),
             ("", None),
-            ("plan.keys[x]", Some((6, 8))),
+            ("plan.keys[x]", None),
             ("é\"[", None),
         ] {
             assert_eq!(place_of(TEXT, path), place, "{path}");

@@ -7,7 +7,7 @@ mod parameter;
 mod value;
 
 pub use parameter::{Kind, MODERATE, Parameter, Range};
-pub use value::{Value, ValueError, Values, counted, four_digits, in_number, readable};
+pub use value::{Value, ValueError, Values, counted, four_digits, in_number, readable, with_unit};
 
 /// One thing: its name, its page in the reference, its constructor `B` (usually a function pointer).
 #[derive(Debug)]

@@ -32,6 +32,11 @@ pub fn four_digits(number: f64) -> String {
     readable(rounded + 0.0)
 }
 
+/// A number and its unit, of which there may be none.
+pub fn with_unit(number: &str, unit: &str) -> String {
+    if unit.is_empty() { number.to_owned() } else { format!("{number} {unit}") }
+}
+
 /// A count with its noun: `1 step`, `2 steps`.
 pub fn counted(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status, Summary};
 use souple_scene::Scene;
-use souple_sweep::with_unit;
-use souple_table::{counted, four_digits};
+use souple_table::{counted, four_digits, with_unit};
 
 use super::progress::Meter;
 use super::{

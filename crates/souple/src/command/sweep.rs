@@ -7,9 +7,9 @@ use souple_io::Column;
 use souple_sweep::{
     Database, Ending, Fit, FoundMotion, KeyState, Kind, Motion, Planner, Progress, Search, Seen, Study,
     SweepError, Tabulation, Tabulator, Unknown, When, Windows, Workers, fingerprints, graphs,
-    sweep as make_runs, table_of, with_unit,
+    sweep as make_runs, table_of,
 };
-use souple_table::counted;
+use souple_table::{counted, with_unit};
 
 use super::progress::Meter;
 use super::{End, Refusal, interruption, print_json, print_line, print_note};

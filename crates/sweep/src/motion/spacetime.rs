@@ -13,11 +13,11 @@
 use std::ops::Range;
 
 use souple_solve::quadratic::{self, NoLeast, QuadraticProgram, beyond};
-use souple_table::readable;
+use souple_table::{readable, with_unit};
 
 use super::course::{Course, OFF, Trajectory, failed, whole};
 use super::slopes::DIFFERENCE;
-use super::{DESCENT, FoundMotion, HALVINGS, Motion, Planner, Seen, Spacetime, Watch, Windows, with_unit};
+use super::{DESCENT, FoundMotion, HALVINGS, Motion, Planner, Seen, Spacetime, Watch, Windows};
 use crate::SweepError;
 use crate::least_squares::{Ending, beside, dot, length};
 
