@@ -602,3 +602,53 @@ fn transitions_that_never_fire() {
     refused(&link(below, ""), &["states.a", "to `b` that never fires", "`D` is a distance"]);
     assert!(scene(&link(below, axis)).is_ok());
 }
+
+/// Probes name one constraint or one crowd of several: what each does adds up to what all do, and a name that is none is refused with those that are.
+#[test]
+fn probes_name_constraints() {
+    let network = "[world]\nperiod = \"1 ms\"\ngravity = [0, 0, -10]\n[systems.main]\nstepper = \"t_simulation\"\n\
+                   [networks.n.masses.a]\npositions = [[0, 0, 0]]\nmass = 2\n\
+                   [networks.n.masses.b]\npositions = [[1, 0, 0]]\nmass = 3\n\
+                   [[networks.n.constraints]]\nname = \"low\"\nof = [\"a\"]\nplane = { place = [0, 0, 0], normal = [0, 0, 1] }\nsense = \"at_least\"\n\
+                   [[networks.n.constraints]]\nof = [\"b\"]\nplane = { place = [0, 0, 0], normal = [0, 0, 1] }\nsense = \"at_least\"\n\
+                   [[networks.n.constraints]]\nname = \"guide\"\nline = { direction = [0, 0, 1] }\n";
+    let probe = |name: &str, quantity: &str, more: &str| {
+        format!("[probes.{name}]\nbody = \"n\"\nquantity = \"{quantity}\"\n{more}\n")
+    };
+    let read = |probes: &str| {
+        let text = format!("format = 1\n{network}{probes}");
+        read_text("net.toml", &text, Path::new("."), &[]).map_err(|faults| faults.to_string())
+    };
+    let probes = [
+        probe("low", "contact_force", "contact = \"n.low\""),
+        probe("other", "contact_force.normal", "contact = \"n.constraints[1]\""),
+        probe("all", "contact_force", ""),
+        probe("guide", "constraint_force", "constraint = \"n.guide\""),
+    ];
+    let scene = read(&probes.concat()).unwrap();
+    let mut world = scene.model.start(scene.state);
+    (0..5).for_each(|_| {
+        world.step().unwrap();
+    });
+    let lifted: Vec<f64> = scene.probes.iter().map(|probe| probe.measure(&mut world).numbers()[2]).collect();
+    for (found, wanted) in lifted.iter().zip([20.0, 30.0, 50.0, 0.0]) {
+        // contacts are found to a ten-millionth of what a step would enter
+        assert!((found - wanted).abs() < 1e-4, "{lifted:?}");
+    }
+    let refused = |quantity: &str, more: &str, words: &[&str]| {
+        let message = read(&probe("p", quantity, more)).err().expect("the probe is refused");
+        assert!(words.iter().all(|word| message.contains(word)), "{words:?} not in:\n{message}");
+    };
+    refused(
+        "contact_force",
+        "contact = \"n.lo\"",
+        &["no contact `n.lo`", "did you mean `n.low`", "n.constraints[1]"],
+    );
+    refused("contact_force", "contact = \"n.guide\"", &["holds from both sides", "`constraint_force`"]);
+    refused("constraint_force", "constraint = \"n.low\"", &["from one side alone", "`contact_force`"]);
+    refused("velocity", "constraint = \"n.guide\"", &["`velocity` is of no constraint"]);
+    let without = format!("{HEAD}{TWO}{}", probe("p", "contact_force", "contact = \"floor\""));
+    let message =
+        read_text("net.toml", &without, Path::new("."), &[]).err().expect("it is refused").to_string();
+    assert!(message.contains("expected none here, for the scene has none"), "{message}");
+}

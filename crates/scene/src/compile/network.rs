@@ -237,7 +237,7 @@ pub fn add_forces(
     let listing =
         if stepper.is_none_or(|stepper| stepper.reads_cliques()) { Listing::State } else { Listing::Own };
     for (index, crowd) in network.crowds.iter().enumerate() {
-        let name = crowd_force(crowd, index, &body.spec.name);
+        let name = crowd.force_name(&body.spec.name, index);
         if let Some(crowd) = self::crowd(name, crowd, body, network, (timestep, listing), draft) {
             forces.push(Box::new(crowd));
         }
@@ -276,11 +276,6 @@ fn law(
             None
         }
     }
-}
-
-/// The name of the force of a crowd.
-fn crowd_force(spec: &CrowdSpec, index: usize, body: &str) -> String {
-    spec.force.clone().unwrap_or_else(|| format!("{body}.crowds[{index}]"))
 }
 
 fn crowd(

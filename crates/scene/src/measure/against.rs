@@ -123,6 +123,7 @@ impl Carriers {
             starts: other.mesh.points.clone(),
             whole: other.mass_rows(),
             contact: None,
+            constraint: None,
             about: None,
             hold: None,
             held: Vec::new(),

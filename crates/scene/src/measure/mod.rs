@@ -92,6 +92,8 @@ struct Part {
     whole: std::ops::Range<usize>,
     /// Only this contact.
     contact: Option<String>,
+    /// Only this constraint.
+    constraint: Option<String>,
     /// The place that moments are taken about [m]; the body's centre of mass where `None`.
     about: Option<Vec3>,
     /// The force that holds its pinned points, of a body of frames.
@@ -410,6 +412,7 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         starts: of_points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
         whole: body.mass_rows(),
         contact: probe.contact.clone(),
+        constraint: probe.constraint.clone(),
         about: probe.about,
         hold: body.is_held_by_springs().then(|| hold_name(&body.spec.name)),
         marks,

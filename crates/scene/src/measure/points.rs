@@ -55,6 +55,10 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
 fn constraint_forces(part: &Part, world: &World) -> Vec<Vec3> {
     let mut forces = vec![Vec3::ZERO; world.rows(part.system).positions.len()];
     world.visit_forces(part.system, &mut |force, at| {
+        let is_meant = part.constraint.as_deref().is_none_or(|name| name == force.name());
+        if !is_meant {
+            return;
+        }
         if let Some(constraints) = force.as_any().downcast_ref::<Constraints>() {
             constraints.add_force(at, &mut constraints.new_scratch(), &mut forces);
         }

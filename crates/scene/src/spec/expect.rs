@@ -73,7 +73,7 @@ impl Expect {
                 Code::UnknownName,
                 &reader.site_of("probe"),
                 message,
-                format!("one of {}", known.join(", ")),
+                crate::keys::one_of(&known),
             );
             return None;
         };

@@ -261,7 +261,7 @@ impl Spec {
             } else if !known.contains(&name) && !name.is_empty() {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no {kind} `{name}`{hint}");
-                log.add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
+                log.add(Code::UnknownName, site, message, crate::keys::one_of(known));
             }
         };
         let skins: Vec<&str> = self.skins.iter().map(|skin| skin.name.as_str()).collect();
@@ -297,9 +297,31 @@ impl Spec {
                 None => {}
             }
         }
+        let pressing: Vec<String> =
+            self.networks().flat_map(|(body, it)| it.names_of_contacts(body)).collect();
+        let touching: Vec<&str> =
+            contacts.iter().copied().chain(pressing.iter().map(String::as_str)).collect();
+        let kept: Vec<String> =
+            self.networks().flat_map(|(body, it)| it.names_of_constraints(body)).collect();
+        let kept: Vec<&str> = kept.iter().map(String::as_str).collect();
         for probe in &self.probes {
-            if let Some(contact) = &probe.contact {
-                check("contact", contact, &contacts, &probe.site);
+            if let Some(name) = &probe.contact {
+                if kept.contains(&name.as_str()) {
+                    let message = format!("`{name}` holds from both sides, and is no contact");
+                    let expected = "`constraint_force` with `constraint`";
+                    log.add(Code::UnknownName, &probe.site, message, expected);
+                } else {
+                    check("contact", name, &touching, &probe.site);
+                }
+            }
+            if let Some(name) = &probe.constraint {
+                if pressing.contains(name) {
+                    let message = format!("`{name}` pushes from one side alone, and is a contact");
+                    let expected = "`contact_force` with `contact`";
+                    log.add(Code::UnknownName, &probe.site, message, expected);
+                } else {
+                    check("constraint", name, &kept, &probe.site);
+                }
             }
         }
         let hands: Vec<&str> = self.hands.iter().map(|hand| hand.name.as_str()).collect();
@@ -315,6 +337,11 @@ impl Spec {
             check("body", &link.from, &bodies, &link.from_site);
             check("body", &link.to, &bodies, &link.to_site);
         }
+    }
+
+    /// Networks with the names of their bodies.
+    fn networks(&self) -> impl Iterator<Item = (&str, &Network)> {
+        self.bodies.iter().filter_map(|body| Some((body.name.as_str(), body.network.as_ref()?)))
     }
 
     /// Bodies, probes and sounds give their names to files, which must stay in the folder of a run.

@@ -355,6 +355,13 @@ pub struct CrowdSpec {
     pub site: Site,
 }
 
+impl CrowdSpec {
+    /// The name of its force, by its number in the network of a body.
+    pub fn force_name(&self, body: &str, index: usize) -> String {
+        self.force.clone().unwrap_or_else(|| format!("{body}.crowds[{index}]"))
+    }
+}
+
 /// Dry friction of balls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionSpec {
@@ -507,6 +514,19 @@ impl Network {
         numbers_of(&self.masses, &self.presented, name)
     }
 
+    /// The names of what pushes masses of a body apart, or from one side: crowds, constraints with a sense, balls and faces.
+    pub fn names_of_contacts(&self, body: &str) -> Vec<String> {
+        let crowds = self.crowds.iter().enumerate().map(|(index, crowd)| crowd.force_name(body, index));
+        let constraints = self.constraints.iter().enumerate().filter(|(_, it)| it.is_sided());
+        crowds.chain(constraints.map(|(index, it)| it.force_name(body, index))).collect()
+    }
+
+    /// The names of constraints that hold from both sides.
+    pub fn names_of_constraints(&self, body: &str) -> Vec<String> {
+        let constraints = self.constraints.iter().enumerate().filter(|(_, it)| !it.is_sided());
+        constraints.map(|(index, it)| it.force_name(body, index)).collect()
+    }
+
     fn check_count(&self, reader: &Reader) {
         if let Some((message, expected)) = self.too_many() {
             reader.log().add(Code::TooLarge, &reader.site_of("masses"), message, expected);
@@ -550,7 +570,7 @@ impl Network {
             if !known.contains(&name.as_str()) {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no group of masses `{name}`{hint}");
-                let expected = format!("one of {}", known.join(", "));
+                let expected = crate::keys::one_of(&known);
                 reader.log().add(Code::UnknownName, &contour.site, message, expected);
             }
         }

@@ -16,7 +16,7 @@ use super::body::{Placement, ROTATION};
 use super::network::{CROWD, CrowdSpec, LINK_TABLE, LinkTable, MASSES, MASSES_MAX, MassGroup};
 use super::view::ViewSpec;
 use crate::diagnostic::{Code, Log, Site};
-use crate::keys::{Key, Keys, Shape, did_you_mean};
+use crate::keys::{Key, Keys, Shape, did_you_mean, one_of};
 use crate::reader::Reader;
 
 static PORT: Keys = Keys::new(
@@ -358,7 +358,7 @@ impl<'a> Part<'a> {
 
     fn refuse(&self, site: &Site, what: String, log: &Log) {
         if !what.is_empty() {
-            log.add(Code::UnknownName, site, what, format!("one of {}", self.known().join(", ")));
+            log.add(Code::UnknownName, site, what, one_of(&self.known()));
         }
     }
 

@@ -10,7 +10,7 @@ use super::quantity::{
 };
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
-use crate::keys::{Key, Keys, Shape};
+use crate::keys::{Key, Keys, Shape, one_of};
 use crate::reader::Reader;
 
 pub(crate) const COMPONENT: Key =
@@ -44,7 +44,16 @@ pub(crate) static PROBE: Keys = Keys::new(
         ),
         Key::new("against", Shape::Table(&AGAINST), "what the values at points are the differences from"),
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
-        Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
+        Key::new(
+            "contact",
+            Shape::Text,
+            "only what this contact does, by its name, or that of a crowd or of a constraint of a network with a sense, balls or faces: `NETWORK.NAME` (for quantities of contacts)",
+        ),
+        Key::new(
+            "constraint",
+            Shape::Text,
+            "only what this constraint of a network does, `NETWORK.NAME` (for constraint_force)",
+        ),
         Key::new("hand", Shape::Text, "whose, for quantities of hands and their tools"),
         Key::new(
             "bone",
@@ -90,6 +99,8 @@ pub struct Probe {
     pub reduction: Reduction,
     pub against: Option<Against>,
     pub contact: Option<String>,
+    /// Only this constraint.
+    pub constraint: Option<String>,
     pub skin: Option<String>,
     pub hand: Option<String>,
     pub bone: Option<String>,
@@ -195,6 +206,7 @@ impl Probe {
             reduction,
             against: against.as_ref().and_then(|against| Against::read(against, quantity.build)),
             contact: reader.maybe_text("contact"),
+            constraint: reader.maybe_text("constraint"),
             skin: reader.maybe_text("skin"),
             hand: reader.maybe_text("hand"),
             bone: reader.maybe_text("bone"),
@@ -231,7 +243,7 @@ impl Probe {
                 let known: Vec<&str> = others().map(|other| other.name.as_str()).collect();
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no other probe `{name}`{hint}");
-                refuse(Code::UnknownName, message, format!("one of {}", known.join(", ")));
+                refuse(Code::UnknownName, message, one_of(&known));
             }
         }
     }
@@ -313,6 +325,14 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             "contact",
             format!("`{name}` is of no contact"),
             "a quantity of contacts, such as \"contact_force\"",
+        );
+    }
+    if reader.has("constraint") && quantity.subject != Subject::Points(PointQuantity::ConstraintForce) {
+        refuse(
+            reader,
+            "constraint",
+            format!("`{name}` is of no constraint that holds from both sides"),
+            "\"constraint_force\", or a quantity of contacts with `contact`",
         );
     }
     if reader.has("skin") && !matches!(quantity.subject, Subject::Skin(_)) {

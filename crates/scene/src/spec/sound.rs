@@ -105,7 +105,7 @@ fn check_probe(name: &str, reader: &Reader, probes: &[Probe]) {
             let known: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
             let hint = crate::keys::did_you_mean(name, known.iter().copied());
             let message = format!("there is no probe `{name}`{hint}");
-            refuse(Code::UnknownName, message, format!("one of {}", known.join(", ")));
+            refuse(Code::UnknownName, message, crate::keys::one_of(&known));
         }
     }
 }

@@ -63,10 +63,7 @@ impl Made {
 pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, index: usize) -> Option<Made> {
     let spec = &network.constraints[index];
     let making = Making { draft, body, network, spec };
-    let name = match &spec.name[..] {
-        "" => format!("{}.constraints[{index}]", body.spec.name),
-        name => format!("{}.{name}", body.spec.name),
-    };
+    let name = spec.force_name(&body.spec.name, index);
     let kind = spec.kind.as_ref()?;
     if let ConstraintKind::Balls(diameter) = kind {
         return making.balls(name, *diameter, timestep).map(Made::Balls);

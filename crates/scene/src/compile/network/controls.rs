@@ -11,7 +11,6 @@ use souple_models::network::{
 
 use super::super::Draft;
 use super::super::bodies::Placed;
-use super::crowd_force;
 use super::plan::{self, Plan};
 use super::table::{self, NumberOfMass, StateSpace, Table};
 use crate::diagnostic::Code;
@@ -172,7 +171,7 @@ fn control(
             .collect(),
         Driven::Crowds(name) => (network.crowds.iter().enumerate())
             .filter(|(_, crowd)| !name.is_empty() && crowd.name == *name)
-            .map(|(index, crowd)| (crowd_force(crowd, index, &body.spec.name), &crowd.law))
+            .map(|(index, crowd)| (crowd.force_name(&body.spec.name, index), &crowd.law))
             .collect(),
     };
     if laws.is_empty() {

@@ -4,7 +4,6 @@ use souple_models::network::{Crowd, Links, ViewedLinks};
 use souple_table::Value;
 
 use super::super::Draft;
-use super::crowd_force;
 use super::steps;
 use super::table::StateSpace;
 use crate::spec::network::{Filled, MassGroup, Places};
@@ -142,7 +141,7 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
             };
             let crowds = network.crowds.iter().enumerate().filter_map(|(index, crowd)| {
                 let law = crowd.law.as_ref()?;
-                let force = crowd_force(crowd, index, &body.spec.name);
+                let force = crowd.force_name(&body.spec.name, index);
                 let of = system.forces.iter().find(|known| known.name() == force);
                 let of = of.and_then(|known| known.as_any().downcast_ref::<Crowd>());
                 Some(LawInfo {

@@ -385,6 +385,14 @@ impl ConstraintSpec {
         }
     }
 
+    /// The name of its force, by its number in the network of a body.
+    pub fn force_name(&self, body: &str, index: usize) -> String {
+        match &self.name[..] {
+            "" => format!("{body}.constraints[{index}]"),
+            name => format!("{body}.{name}"),
+        }
+    }
+
     /// Whether it holds from one side alone, by forces that push and do not pull.
     pub fn is_sided(&self) -> bool {
         self.sense.is_some() || self.kind.as_ref().is_some_and(ConstraintKind::keeps_apart)

@@ -17,7 +17,7 @@ use souple_table::{Range, Value};
 
 use super::{CrowdSpec, FRICTION, FrictionSpec, LINK};
 use crate::diagnostic::{Code, Site};
-use crate::keys::{Key, Keys, Shape, did_you_mean};
+use crate::keys::{Key, Keys, Shape, did_you_mean, one_of};
 use crate::reader::{Chosen, Reader};
 
 pub(super) static OBJECT: Keys = Keys::new(
@@ -93,7 +93,7 @@ pub(super) fn crowds(network: &str, groups: &[&str], reader: &Reader) -> Vec<Cro
                 if !groups.contains(&group.as_str()) {
                     let hint = did_you_mean(group, groups.iter().copied());
                     let message = format!("there is no group of masses `{group}`{hint}");
-                    refuse(Code::UnknownName, message, format!("one of {}", groups.join(", ")));
+                    refuse(Code::UnknownName, message, one_of(groups));
                 } else if !taken.insert(group.clone()) {
                     let message = format!("the group `{group}` is in a layer already");
                     refuse(Code::Conflict, message, "each group in one layer of one object".to_owned());
@@ -151,7 +151,7 @@ fn encounter(name: &str, table: &Reader, objects: &[Object]) -> Vec<CrowdSpec> {
     for unknown in names.iter().filter(|name| !known.contains(&name.as_str())) {
         let hint = did_you_mean(unknown, known.iter().copied());
         let message = format!("there is no object `{unknown}`, nor a group that is of none{hint}");
-        let expected = format!("one of {}", known.join(", "));
+        let expected = one_of(&known);
         table.log().add(Code::UnknownName, &table.site_of("of"), message, expected);
     }
     let is_meant = |object: &&Object| names.is_empty() || names.contains(&object.name);
