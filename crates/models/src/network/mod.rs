@@ -21,6 +21,7 @@ pub mod kernel;
 pub mod law;
 pub mod laws;
 mod layout;
+mod measures;
 mod pair_tangent;
 mod parting;
 mod piecewise;

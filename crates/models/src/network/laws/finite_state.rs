@@ -11,6 +11,7 @@ use souple_table::{Parameter, Value};
 
 use crate::network::cases::{Questions, Truth};
 use crate::network::law::{LinkEntry, LinkError, Making, Moment, Reach, Response};
+use crate::network::measures::{ENERGY, FORCE, LENGTH, Measures, POWER, TIME, VELOCITY};
 use crate::network::written::{
     ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, check_names, constants, formula,
     formula_within, refuse_unnamed,
@@ -250,6 +251,7 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     }
     let variables: Vec<&str> =
         VARIABLES.into_iter().chain(remembered.iter().copied()).chain(names.iter().copied()).collect();
+    check_measures(making)?;
     let mut states = Vec::new();
     let state_names: Vec<&str> = texts("states").iter().map(|(name, _)| name.as_str()).collect();
     for (name, push) in texts("states") {
@@ -330,6 +332,34 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
             || states.iter().any(|state| state.depends_on(position))
     })?;
     Ok(FiniteState { states, starts, constants, timestep: making.timestep })
+}
+
+/// Refuses parameters whose units are not those of their places; what is remembered may have any, but for `L0`.
+fn check_measures(making: &Making) -> Result<(), LinkError> {
+    let texts = |name| making.values.texts(name);
+    let of_variables =
+        [("D", LENGTH), ("D_before", LENGTH), ("V", VELOCITY), ("t", TIME), ("Te", TIME), ("L0", LENGTH)];
+    let measures = Measures::new(&of_variables, texts("parameters"));
+    for (key, wanted) in
+        [("states", Some(FORCE)), ("transitions", None), ("energies", Some(ENERGY)), ("losses", Some(POWER))]
+    {
+        for (name, said) in texts(key) {
+            let place = match key {
+                "transitions" => format!("{key}.\"{name}\""),
+                _ => format!("{key}.{name}"),
+            };
+            measures.check(&place, said, wanted)?;
+        }
+    }
+    for key in ["entries", "updates"] {
+        for (name, settings) in texts(key) {
+            for (number, value) in settings.split(';').filter_map(|setting| setting.split_once('=')) {
+                let wanted = (number.trim() == "L0").then_some(LENGTH);
+                measures.check_within(&format!("{key}.{name}"), settings, value.trim(), wanted)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What a text like `L0 = D; k = 0` sets of what is remembered.

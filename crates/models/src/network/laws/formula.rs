@@ -7,6 +7,7 @@ use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Moment, Reach, Response};
+use crate::network::measures::{ENERGY, FORCE, LENGTH, Measures, TIME, VELOCITY};
 use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formula, refuse_unnamed};
 
 /// What formulas of links may refer to, before the parameters of the scene.
@@ -122,6 +123,9 @@ pub const ENTRY: LinkEntry = LinkEntry {
         };
         let variables: Vec<&str> = VARIABLES.into_iter().chain(names.iter().copied()).collect();
         let formula = formula(place, text, &variables)?;
+        let measures = [("D", LENGTH), ("D_before", LENGTH), ("V", VELOCITY), ("L0", LENGTH), ("t", TIME)];
+        let wanted = if kind == Kind::Push { FORCE } else { ENERGY };
+        Measures::new(&measures, making.values.texts("parameters")).check(place, text, Some(wanted))?;
         refuse_unnamed(&names, &format!("`{place}` names"), |at| formula.depends_on(VARIABLES.len() + at))?;
         if kind == Kind::Energy && (formula.depends_on(1) || formula.depends_on(2)) {
             let what =
