@@ -12,7 +12,7 @@ use souple_scene::{
 
 use crate::failure::Failure;
 use crate::frames::solid_of;
-use crate::leaps::Leaps;
+use crate::lookout::Lookout;
 use crate::machine::peak_bytes;
 use crate::monitor::{Grown, Monitor};
 use crate::recording::{Recording, add_hash};
@@ -38,7 +38,7 @@ pub struct Session {
     pub warnings: Vec<String>,
     /// What watches its energy, where the scene asks for it.
     pub monitor: Option<Monitor>,
-    leaps: Leaps,
+    lookout: Lookout,
     wavering: Wavering,
     /// Most that the world was seen to hold [bytes].
     held: usize,
@@ -120,6 +120,7 @@ impl Session {
             energy_at_start: world.energy(),
             momentum_at_start: world.momentum(),
             wavering: Wavering::new(&world, &bodies),
+            lookout: Lookout::new(&world, &bodies),
             bodies,
             skins,
             hands,
@@ -127,7 +128,6 @@ impl Session {
             adjustables,
             warnings,
             monitor: run.monitor.map(|spec| Monitor::new(spec, &mut world)),
-            leaps: Leaps::default(),
             held: 0,
             failure: None,
             around: AroundSteps::default(),
@@ -157,7 +157,7 @@ impl Session {
             Ok(()) => {
                 self.solver.merge(self.world.last_report());
                 self.note_changes(&before);
-                self.warnings.extend(self.leaps.look(&self.world));
+                self.warnings.extend(self.lookout.look(&self.world, &self.bodies));
                 self.warnings.extend(self.wavering.look(&self.world, &self.bodies));
                 Stepped::On
             }

@@ -11,5 +11,6 @@ mod kneaded;
 mod levels_resume;
 mod monitor;
 mod networks_resume;
+mod passages;
 mod pictures;
 mod sounds;

@@ -421,6 +421,11 @@ fn levels<'a>(world: &'a World, system: usize, force: &str) -> Option<(usize, &'
 }
 
 impl BodyInfo {
+    /// Whether its points are the masses of a network.
+    pub fn is_network(&self) -> bool {
+        !self.radii.is_empty()
+    }
+
     /// Of each point of its mesh: the level at work there, where the body has levels.
     pub fn level_of_point(&self, world: &World) -> Option<Vec<u32>> {
         Some(census(world, self.system, &self.force)?.level_of_point)

@@ -17,6 +17,7 @@ mod leading;
 mod opening;
 #[cfg(test)]
 mod pair_tests;
+pub mod passage;
 pub mod shape;
 mod shape_contact;
 mod surface_contact;

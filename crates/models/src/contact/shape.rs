@@ -48,6 +48,11 @@ pub trait Shape: Send + Sync + Debug {
         self.nearest(point, reach)
     }
 
+    /// In words, what at a point the formula that the shape is of comes to, where that is no number: there is nothing to touch then.
+    fn undefined_at(&self, _point: Vec3) -> Option<String> {
+        None
+    }
+
     /// Whether a point comes no nearer to it than it moves itself, as it does where the answer is the distance to a thing that rests.
     fn is_distance(&self) -> bool {
         false

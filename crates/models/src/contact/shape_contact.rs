@@ -226,6 +226,17 @@ impl ShapeContact {
         self.shape.as_ref()
     }
 
+    /// Where its points are in the place of the shape [m], in their order.
+    pub fn places<'a>(&'a self, at: &'a Configuration) -> impl Iterator<Item = Vec3> + 'a {
+        let pose = self.pose(at);
+        self.points.iter().map(move |point| pose.to_shape(at.positions[point.row as usize]))
+    }
+
+    /// Its points, as they were at the start.
+    pub fn points(&self) -> &[ContactPoint] {
+        &self.points
+    }
+
     /// Points that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<Touch> {
         self.each_touch(at).collect()

@@ -290,6 +290,26 @@ fn against_shape(
         );
         return None;
     }
+    for (point, at) in
+        touching.points.iter().zip(touching.points.iter().map(|point| pose.to_shape(point.start)))
+    {
+        if let Some(what) = built.undefined_at(at) {
+            let message = format!(
+                "there is nothing of shape `{}` to touch where point {} of body `{}` starts, at {:?} m: {what} there",
+                shape.name,
+                point.row as usize - body.rows.start,
+                body.spec.name,
+                at.to_array()
+            );
+            draft.log.add(
+                Code::NotFinite,
+                &shape.site,
+                message,
+                "a formula that is finite with its slope where points are",
+            );
+            return None;
+        }
+    }
     let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
     let mut joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     if contact.imposed.is_some() {

@@ -1,7 +1,8 @@
 //! A scene whose commands are given from outside, and what keys come to under them.
 
 use souple_engine::{Interruption, State, World};
-use souple_scene::{PlannedControl, ProbeInfo, Scene};
+use souple_run::Lookout;
+use souple_scene::{BodyInfo, PlannedControl, ProbeInfo, Scene};
 
 use super::slopes::{Coordinate, coordinates};
 use super::{FoundMotion, Gain, KeyState, Motion, When};
@@ -23,6 +24,7 @@ pub(super) struct Course {
     pub start: State,
     pub controls: Vec<PlannedControl>,
     pub probes: Vec<ProbeInfo>,
+    bodies: Vec<BodyInfo>,
     /// Of the commands of a period.
     pub weights: Vec<f64>,
     pub periods: usize,
@@ -68,7 +70,7 @@ impl Course {
             |message: String| SweepError::Scene { run: 0, settings: study.settings.join(", "), message };
         let (scene, controls) = souple_scene::read_file_to_plan(&study.scene, &study.settings)
             .map_err(|found| refuse(found.to_string()))?;
-        let Scene { mut model, state, probes, run, .. } = scene;
+        let Scene { mut model, state, probes, bodies, run, .. } = scene;
         if controls.is_empty() {
             let expected = "controls of actuators with `plan = \"FILE.csv\"`";
             return Err(SweepError::value("scene", "without commands that are planned", expected));
@@ -106,6 +108,7 @@ impl Course {
             world: model.start(state),
             controls,
             probes,
+            bodies,
             periods,
             keys,
             coordinates,
@@ -167,6 +170,36 @@ impl Course {
             .zip(self.weights.iter().cycle())
             .map(|(command, weight)| weight * command * command)
             .sum()
+    }
+
+    /// What a run of a motion warns of.
+    pub fn warnings_of(&mut self, now: &Trajectory) -> Result<Vec<String>, SweepError> {
+        self.world.resume(self.start.clone()).map_err(failed)?;
+        let (mut lookout, mut said) = (Lookout::new(&self.world, &self.bodies), Vec::new());
+        for state in &now.states[1..] {
+            self.world.resume(state.clone()).map_err(failed)?;
+            said.extend(lookout.look(&self.world, &self.bodies));
+        }
+        Ok(said)
+    }
+
+    /// The first contact that presses in a motion, and when [s].
+    pub fn first_touch(&mut self, now: &Trajectory) -> Result<Option<(String, f64)>, SweepError> {
+        for state in &now.states {
+            self.world.resume(state.clone()).map_err(failed)?;
+            let mut touching = None;
+            for system in 0..self.world.model().systems.len() {
+                self.world.visit_forces(system, &mut |force, at| {
+                    force.visit_contacts(at, &mut |_| {
+                        touching = touching.take().or(Some(force.name().to_owned()))
+                    });
+                });
+            }
+            if let Some(name) = touching {
+                return Ok(Some((name, self.world.time())));
+            }
+        }
+        Ok(None)
     }
 
     pub fn is_stopped(&self) -> bool {

@@ -63,7 +63,10 @@ pub(super) fn search(
     regulator.course.refuse_what_remembers(&now)?;
     regulator.course.refuse_what_is_cut(&now)?;
     let gains = regulator.gains(&now, &policy)?;
-    Ok(regulator.course.found(planner.motion, now, (iterations, ending), paid, gains))
+    let of_run = regulator.course.warnings_of(&now)?;
+    let mut found = regulator.course.found(planner.motion, now, (iterations, ending), paid, gains);
+    found.warnings.extend(of_run);
+    Ok(found)
 }
 
 struct Regulator {

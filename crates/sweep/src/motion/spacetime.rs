@@ -38,8 +38,8 @@ const MET: f64 = 1e-9;
 const ROUNDING: f64 = 1e-13;
 
 /// What is said where slopes promise what does not come, and nothing else is known.
-const THROWN_BACK: &str = "commands that slopes promise to bring keys nearer do not: something on the way stops the motion or throws it back, as a \
-                           wall, an obstacle or the end of a guide does";
+const UNSMOOTH: &str = "commands that slopes promise to bring keys nearer do not, and nothing touches on the way: the motion bends sharply with its \
+                        commands, as where a law stops or switches, or it goes by an obstacle within a period";
 /// What is said where no commands can be computed, and nothing else is known.
 const UNLIKE: &str = "no commands can be computed that bring keys nearer: keys and `weights` are of very unlike sizes, or commands hardly change keys";
 
@@ -343,6 +343,7 @@ impl<'a> Search<'a> {
             let after = search.weighed(&next.commands, &next.reached);
             after < before - DESCENT * share * forecast.max(0.0) + ROUNDING * before
         };
+        let mut first_tried: Option<Trajectory> = None;
         for halvings in 0..HALVINGS {
             let share = 0.5_f64.powi(halvings as i32);
             let commands: Vec<f64> =
@@ -351,6 +352,7 @@ impl<'a> Search<'a> {
             if falls(self, &next, share) {
                 return Ok(Some(next));
             }
+            first_tried.get_or_insert_with(|| next.clone());
             if halvings == 0
                 && let Some(again) = self.least(linear, &next.reached, &commands)?
                 && let Some(next) = self.tried(now, linear, &again.commands)?
@@ -361,7 +363,20 @@ impl<'a> Search<'a> {
         }
         // where the step is smooth, a small enough part of the way brings a share of what is forecast
         if forecast > self.motion.tolerance * before {
-            self.why = Some(self.stopped(linear).unwrap_or_else(|| THROWN_BACK.to_owned()));
+            // what stops at a wall may touch it in what is tried alone
+            let touch = match (self.course.first_touch(now)?, &first_tried) {
+                (None, Some(tried)) => self.course.first_touch(tried)?,
+                (touch, _) => touch,
+            };
+            self.why = Some(match (self.stopped(linear), touch) {
+                (Some(why), _) => why,
+                (None, Some((contact, time))) => format!(
+                    "commands that slopes promise to bring keys nearer do not: contact `{contact}`, which presses from {} s on, stops the motion or \
+                     throws it back, or is a way through that is easier",
+                    readable(time)
+                ),
+                (None, None) => UNSMOOTH.to_owned(),
+            });
         }
         Ok(None)
     }
@@ -416,6 +431,7 @@ impl<'a> Search<'a> {
             return Err(SweepError::Unmet { missed: missed.join("; "), bounds: self.bounds() });
         }
         let cost = self.paid(&now);
+        let of_run = self.course.warnings_of(&now)?;
         let mut found = self.course.found(self.motion, now, (iterations, ending), cost, Vec::new());
         let idle = self.course.controls.iter().zip(&self.is_felt).filter(|(_, is_felt)| !**is_felt);
         found.warnings.extend(idle.map(|(control, _)| {
@@ -425,6 +441,7 @@ impl<'a> Search<'a> {
             )
         }));
         found.warnings.extend(missed);
+        found.warnings.extend(of_run);
         found.warnings.extend(self.why.take().filter(|_| ending == Ending::Stalled));
         Ok(found)
     }

@@ -95,6 +95,16 @@ impl Shape for Height {
         Some(Nearest { distance, normal, curvature: curvature.symmetric_part() })
     }
 
+    fn undefined_at(&self, point: Vec3) -> Option<String> {
+        let (place, normal) = self.ground(point.x, point.y);
+        let text = self.formula.text();
+        match (place.z.is_finite(), normal.is_finite()) {
+            (true, true) => None,
+            (false, _) => Some(format!("its height `{text}` is {}", place.z)),
+            (true, false) => Some(format!("its height `{text}` has no slope")),
+        }
+    }
+
     fn outline(&self) -> Option<Outline> {
         let side = SQUARES as u32 + 1;
         let share = |n: u32| f64::from(n) / SQUARES as f64;
