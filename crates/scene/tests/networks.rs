@@ -652,3 +652,18 @@ fn probes_name_constraints() {
         read_text("net.toml", &without, Path::new("."), &[]).err().expect("it is refused").to_string();
     assert!(message.contains("expected none here, for the scene has none"), "{message}");
 }
+
+/// A plane that keeps masses on one side is drawn as a wall, with that side free.
+#[test]
+fn planes_of_constraints_are_drawn() {
+    let wall = |more: &str| {
+        let plane = "plane = { place = [0, 0, -1], normal = [0, 0, -2] }";
+        let made = scene(&format!("{TWO}[[networks.n.constraints]]\n{plane}\n{more}\n")).unwrap();
+        made.model.systems[0].forces.iter().find_map(|force| force.obstacle()).map(|wall| wall.form)
+    };
+    let up = souple_math::Vec3::Z;
+    let form = souple_engine::obstacle::Form::Plane { point: -up, normal: up };
+    assert_eq!(wall("sense = \"at_most\""), Some(form));
+    // what holds from both sides is no wall
+    assert_eq!(wall("time = \"10 ms\""), None);
+}

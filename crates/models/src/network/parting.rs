@@ -4,8 +4,8 @@ use std::any::Any;
 
 use souple_engine::unilateral::MOST_SIDES;
 use souple_engine::{
-    Configuration, ContactPoint, Declaration, Energy, Force, LinkShown, Pair, Scratch, TangentWeights,
-    Unilateral,
+    Configuration, ContactPoint, Declaration, Energy, Force, LinkShown, Obstacle, Pair, Scratch,
+    TangentWeights, Unilateral,
 };
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
@@ -31,6 +31,11 @@ pub trait Apart: Unilateral + 'static {
 
     /// See [`Force::visit_links`].
     fn visit_links(&self, _at: &Configuration, _visit: &mut dyn FnMut(&LinkShown)) {}
+
+    /// See [`Force::obstacle`].
+    fn obstacle(&self) -> Option<Obstacle> {
+        None
+    }
 
     /// See [`Force::new_scratch`].
     fn new_scratch(&self) -> Scratch {
@@ -160,6 +165,10 @@ impl<A: Apart> Force for Parting<A> {
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
         self.0.visit_links(at, visit);
+    }
+
+    fn obstacle(&self) -> Option<Obstacle> {
+        self.0.obstacle()
     }
 
     fn bytes(&self) -> usize {

@@ -3,11 +3,17 @@
 //! A rod of which masses come no nearer than its length is what two balls do, one that they come no farther than is a string; a plane or
 //! a surface keeps masses on one side. The forces, impulses where masses collide, are found by the step ([`souple_engine::unilateral`]).
 
-use souple_engine::{Configuration, ImpactLaw, LinkShown, LinkState, Pair, Sides, Unilateral};
+use std::sync::Arc;
+
+use souple_engine::obstacle::Form;
+use souple_engine::{
+    Configuration, ImpactLaw, LinkShown, LinkState, Motion, Obstacle, Pair, Sides, Unilateral,
+};
 use souple_math::Vec3;
 
 use super::parting::Apart;
 use super::relations::Relation;
+use crate::loads::RigidMotion;
 
 /// From which side a relation `g` holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,11 +52,25 @@ pub struct SidedConstraints {
     /// All have a [`Relation::slope`].
     relations: Vec<Box<dyn Relation>>,
     sided: Sided,
+    /// The wall that all of its masses are kept from, for pictures.
+    wall: Option<Obstacle>,
 }
 
 impl SidedConstraints {
     pub fn new(name: impl Into<String>, relations: Vec<Box<dyn Relation>>, sided: Sided) -> Self {
-        Self { name: name.into(), relations, sided }
+        Self { name: name.into(), relations, sided, wall: None }
+    }
+
+    /// One plane for all of its masses, to be drawn.
+    ///
+    /// # Parameters
+    /// - `normal`: of length 1, to the side where relations are positive.
+    pub fn drawn_as_plane(mut self, point: Vec3, normal: Vec3, motion: Option<Arc<dyn Motion>>) -> Self {
+        let free = normal * self.sided.sense.sign();
+        let motion = motion.unwrap_or_else(|| Arc::new(RigidMotion::default()));
+        self.wall =
+            Some(Obstacle { name: self.name.clone(), form: Form::Plane { point, normal: free }, motion });
+        self
     }
 
     pub fn relations(&self) -> &[Box<dyn Relation>] {
@@ -127,6 +147,10 @@ impl Apart for SidedConstraints {
 
     fn memory_len(&self) -> usize {
         1 + OF_EACH * self.relations.len()
+    }
+
+    fn obstacle(&self) -> Option<Obstacle> {
+        self.wall.clone()
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {

@@ -76,6 +76,13 @@ pub fn of(draft: &Draft, (body, network): (&Placed, &Network), timestep: f64, in
         let sided = Sided { sense, radius: spec.radius, law: spec.law };
         let constraints = SidedConstraints::new(name, relations, sided);
         making.check_sides(&constraints)?;
+        let constraints = match kind {
+            ConstraintKind::Plane(Guided { place: Some(place), motion }, normal) => {
+                let motion = motion::motion(draft.log, motion.as_ref(), &spec.kind_site)?;
+                constraints.drawn_as_plane(*place, *normal, motion)
+            }
+            _ => constraints,
+        };
         return Some(Made::Sided(constraints));
     }
     let exact = match spec.yields_at {
