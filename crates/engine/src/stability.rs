@@ -27,6 +27,9 @@ const GROWTH: f64 = 0.1;
 /// Iterations of the power method: the Rayleigh quotient of a mesh's spectrum is then within a few percent.
 const ITERATIONS: usize = 40;
 
+/// Of the longest step, what is told of it: the frequency that it is of is approached from below.
+pub const MARGIN: f64 = 0.95;
+
 /// Highest frequency and rate of damping at the placed state, by the power method on `M⁻¹ K` and `M⁻¹ B` over the unknowns,
 /// whatever carries the rows. What may touch later counts as if all of it touched at once, by
 /// [`crate::Force::touching_stiffness`]; how it would damp then does not.
@@ -48,11 +51,11 @@ pub fn forecast(
         if is_damped { highest_eigenvalue(system, state, around, ws, damping) } else { (0.0, None) };
     let longest_step = match system.stepper.stability() {
         Stability::Unconditional => f64::INFINITY,
-        Stability::Limited(limit) => 0.95 * longest_step(highest_frequency / limit, highest_damping),
+        Stability::Limited(limit) => MARGIN * longest_step(highest_frequency / limit, highest_damping),
         // growth exp(factor ω^(power + 1) h^power t): a tenth a second, and what is damped still falls, h γ < 2
         Stability::Growing { factor, power } => {
             let slow = (GROWTH / (factor * highest_frequency.powi(power + 1))).powf(1.0 / f64::from(power));
-            slow.min(0.95 * longest_step(0.0, highest_damping))
+            slow.min(MARGIN * longest_step(0.0, highest_damping))
         }
     };
     // of the equation of the longest step, the greater term

@@ -29,7 +29,7 @@ pub struct FrequencyError {
 fn hint(error: &ModesError) -> &'static str {
     match error {
         ModesError::Solve(SolveError::Singular { .. }) => {
-            "; bodies that are free to move have frequencies of zero: look near another one (`--near 1`)"
+            "; what nothing holds has a stiffness and a frequency of zero, as bodies that are free to move, and masses across links that are slack or not stretched: look near another one (`--near 1`)"
         }
         _ => "",
     }

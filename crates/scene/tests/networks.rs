@@ -653,6 +653,14 @@ fn probes_name_constraints() {
     assert!(message.contains("expected none here, for the scene has none"), "{message}");
 }
 
+/// A period in which a duration that is told has no place is refused at its line.
+#[test]
+fn periods_fit_durations() {
+    let text = format!("{HEAD}{TWO}[run]\nduration = \"1 s\"\n").replace("\"10 ms\"", "1e300");
+    let message = read_text("net.toml", &text, Path::new("."), &[]).err().expect("it is refused").to_string();
+    assert!(message.contains("net.toml:3:") && message.contains("no step would be made"), "{message}");
+}
+
 /// A plane that keeps masses on one side is drawn as a wall, with that side free.
 #[test]
 fn planes_of_constraints_are_drawn() {

@@ -379,6 +379,20 @@ impl Spec {
 
     fn check_times(&self, log: &Log) {
         let periods = self.run.duration / self.world.period;
+        // half a period is rounded up to one; a duration that is left out may be told on the command line
+        if self.run.has_duration && periods < 0.5 {
+            let message = format!(
+                "a `duration` of {} s is {periods:.3e} of the period, {} s: no step would be made",
+                readable(self.run.duration),
+                readable(self.world.period)
+            );
+            log.add(
+                Code::OutOfRange,
+                &self.world.period_site,
+                message,
+                "a period of at most twice the `duration`",
+            );
+        }
         if periods > PERIODS_MAX {
             let message = format!("the run has {periods:.1e} periods of {} s", readable(self.world.period));
             let expected = format!("at most {PERIODS_MAX:.0e} periods in the duration of a run");

@@ -145,6 +145,8 @@ pub struct SystemSpec {
 pub struct RunSpec {
     /// [s]
     pub duration: f64,
+    /// Whether the scene tells it.
+    pub has_duration: bool,
     pub frames: u64,
     pub seed: u64,
     pub monitor: Option<MonitorSpec>,
@@ -228,6 +230,7 @@ impl RunSpec {
     pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             duration: reader.number("duration"),
+            has_duration: reader.has("duration"),
             frames: reader.maybe_integer("frames").unwrap_or(0) as u64,
             seed: reader.maybe_integer("seed").unwrap_or(0) as u64,
             monitor: reader.table("monitor").map(|monitor| MonitorSpec {
@@ -240,6 +243,6 @@ impl RunSpec {
 
 impl Default for RunSpec {
     fn default() -> Self {
-        Self { duration: 1.0, frames: 30, seed: 0, monitor: None }
+        Self { duration: 1.0, has_duration: false, frames: 30, seed: 0, monitor: None }
     }
 }

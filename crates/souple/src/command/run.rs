@@ -78,6 +78,9 @@ pub enum Strictness {
 pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
+    if arguments.steps == Some(0) {
+        print_note("`--steps 0`: nothing is stepped, and results are those of the start");
+    }
     let mut options = Options {
         steps: arguments.steps,
         duration: arguments.duration.as_deref().map(parse_duration).transpose()?,
@@ -228,7 +231,10 @@ fn print_summary(report: &Report, out: Option<&Path>) {
     for probe in &report.probes {
         print_line(format_args!("  {} = {:?} {}{}", probe.name, probe.last, probe.unit, extremes(probe)));
     }
-    let files = out.into_iter().flat_map(|out| [out.join("report.json"), out.join("last.png")]);
+    let sounds = report.sounds.iter().map(|sound| format!("{}.wav", sound.name));
+    let names = ["report.json", "probes.csv"].map(str::to_owned).into_iter().chain(sounds);
+    let names: Vec<String> = names.chain(["last.png".to_owned()]).collect();
+    let files = out.into_iter().flat_map(|out| names.iter().map(move |name| out.join(name)));
     for file in files.filter(|file| file.is_file()) {
         print_line(format_args!("  {}", file.display()));
     }

@@ -128,9 +128,10 @@ pub(super) const ENTRY: ShapeEntry = ShapeEntry {
     source: "Jimenez 1993, P2-III.2.2: moulding on z = f(x, y)",
     parameters: &[
         Parameter::text("height", "z of the ground [m], as a formula of x and y [m]"),
-        Parameter::vector("low", "m", "a corner of what is drawn, by x and y")
+        Parameter::vector("low", "m", "a corner of what is drawn, by its x and y alone")
             .or(Value::Vector([-1.0, -1.0, 0.0])),
-        Parameter::vector("high", "m", "the opposite corner").or(Value::Vector([1.0, 1.0, 0.0])),
+        Parameter::vector("high", "m", "the opposite corner, by its x and y alone")
+            .or(Value::Vector([1.0, 1.0, 0.0])),
     ],
     build: |values, _| {
         let text = values.text("height");

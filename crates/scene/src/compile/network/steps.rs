@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use souple_engine::Force;
+use souple_engine::stability::MARGIN;
 use souple_engine::steppers::Stability;
 use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
@@ -135,12 +136,24 @@ struct Worst<'a> {
 }
 
 /// A step that masses bear whatever their links and crowds come to [s]; `None` where they bear those that they are taken in.
+///
+/// It is told with the margin that the longest step at rest is, and so is never above that. What a step takes of the bound grows between as
+/// `h`, of dampers, and as `h²`, of springs: by the former it is on the safe side, and the farther below the longest the longer the step is
+/// that is tried.
 pub fn safe_step(draft: &Draft, body: &Placed, network: &Network) -> Option<f64> {
-    worst(draft, body, network).map(|worst| worst.timestep / worst.share)
+    worst(draft, body, network).map(|worst| worst.safe_step())
+}
+
+impl Worst<'_> {
+    fn safe_step(&self) -> f64 {
+        MARGIN * self.timestep / self.share
+    }
 }
 
 fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
-    let Worst { mass, share, timestep, is_linked, met } = worst(draft, body, network)?;
+    let worst = worst(draft, body, network)?;
+    let safe = worst.safe_step();
+    let Worst { mass, share, timestep, is_linked, met } = worst;
     let met: Vec<String> = met.iter().map(|(count, crowd)| format!("{count} in crowd `{crowd}`")).collect();
     let whose = match (is_linked, met.is_empty()) {
         (_, true) => "of the links".to_owned(),
@@ -151,11 +164,11 @@ fn of_body(draft: &Draft, body: &Placed, network: &Network) -> Option<String> {
     };
     Some(format!(
         "{}: K + 2Z {whose} at mass {mass} of network `{}` is {} of what a step of {timestep} s bears: \
-         the network may be unstable; a step of {:.3e} s is safe whatever states they are in, and a longer one may be",
+         the network may be unstable; a step of {safe:.3e} s is safe whatever states they are in, and a longer one may be, \
+         as is told when that is tried",
         draft.place(&body.spec.site),
         body.spec.name,
         four_digits(share),
-        timestep / share,
     ))
 }
 
