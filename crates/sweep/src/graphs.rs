@@ -7,7 +7,7 @@ use souple_scene::{ProbeInfo, Scene};
 
 use crate::SweepError;
 use crate::study::{Graph, Study};
-use crate::table::{AXES, Row, Table};
+use crate::table::{AXES, Row, Table, VALUES};
 
 /// Pixels of a graph for each unit of its size: as many as graphs of probes have.
 const FINENESS: f64 = 2.0;
@@ -41,8 +41,18 @@ pub fn check(study: &Study, scene: &Scene) -> Result<(), SweepError> {
         for (key, name) in [("x", &graph.x), ("y", &graph.y)] {
             let mut parts = name.split('.');
             let probe = parts.next().unwrap_or_default();
-            let has_component = parts.any(|part| AXES.contains(&part));
+            let suffixes: Vec<&str> = parts.collect();
+            let has_component = suffixes.iter().any(|part| AXES.contains(part));
             let is_probe = |known: &ProbeInfo| known.name == probe && known.gives_vector() == has_component;
+            let unknown = suffixes.iter().find(|part| !AXES.contains(part) && !VALUES.contains(part));
+            if let Some(unknown) = unknown.filter(|_| scene.probes.iter().any(|known| known.name == probe)) {
+                let near = souple_table::nearest(unknown, VALUES);
+                let hint = near.map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default();
+                let message = format!("`{name}`, of which `{unknown}` says nothing{hint}");
+                let expected = format!("{} or nothing behind a probe and its component", VALUES.join(", "));
+                let place = format!("graphs.{}.{key}", graph.name);
+                return Err(SweepError::value(place, message, expected));
+            }
             let is_known =
                 paths.contains(&name.as_str()) || name == "wall_seconds" || scene.probes.iter().any(is_probe);
             if !is_known {

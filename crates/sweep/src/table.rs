@@ -34,6 +34,8 @@ impl Row {
 
 /// Letters of components.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+/// What of a run a number is, behind probe and component; the last where none is named.
+pub(crate) const VALUES: [&str; 4] = ["last", "first", "min", "max"];
 
 /// The runs of a study as the file has them, by the fingerprints of their scenes.
 ///

@@ -127,6 +127,7 @@ fn graphs_of_nothing_are_refused() {
     for (graph, wanted) in [
         ("x = \"tip.y\"\ny = \"place.y\"", "`tip.y`"),
         ("x = \"bodies.block.material.density\"\ny = \"palce.y\"", "place"),
+        ("x = \"bodies.block.material.density\"\ny = \"place.y.mim\"", "did you mean `min`"),
         ("x = \"wall_seconds\"\ny = \"place.y\"\nlines = \"world.period\"", "a path that varies"),
     ] {
         let folder = Folder::new("nothing", &format!("{vary}[graphs.sag]\n{graph}\n"));
