@@ -1,21 +1,17 @@
 //! Bodies with faces in scenes: momenta, bits, what is refused.
 
+use std::sync::LazyLock;
+
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::worlds::{assert_goes_on, read, started, stepped};
+use crate::worlds::{DIE, T_SIMULATION, assert_goes_on, read, started, stepped};
 
 /// Two dice and a ball that fly into each other where nothing else pulls.
-const FLYING: &str = r#"
-format = 1
-[world]
-period = "10 ms"
-[systems.main]
-stepper = "t_simulation"
-steps_per_period = 5
-[modules.die.masses.corners]
-lattice = { origin = [-0.1, -0.1, -0.1], spacing = 0.2, counts = [2, 2, 2] }
-mass = 0.1
+static FLYING: LazyLock<String> =
+    LazyLock::new(|| format!("{T_SIMULATION}steps_per_period = 5\n{DIE}{DICE}"));
+
+const DICE: &str = r#"
 [networks.space.modules.one]
 module = "die"
 rotate = { axis = [1, 0.3, 0.2], angle = "40 deg" }
@@ -54,7 +50,7 @@ fn momenta(world: &World) -> [Vec3; 2] {
 fn momenta_are_kept() {
     for friction in ["0", "0.3"] {
         let setting = format!("networks.space.constraints[1].friction={friction}");
-        let mut world = started(FLYING, &[&setting]);
+        let mut world = started(&FLYING, &[&setting]);
         let [linear, angular] = momenta(&world);
         let mut collided = false;
         for step in 0..120 {
@@ -75,7 +71,7 @@ fn momenta_are_kept() {
 /// Nothing enters anything in any step, and what is lost of the energy is counted.
 #[test]
 fn nothing_is_entered() {
-    let mut world = started(FLYING, &[]);
+    let mut world = started(&FLYING, &[]);
     let mut least = 0.0_f64;
     for _ in 0..120 {
         world.step().unwrap();
@@ -95,8 +91,8 @@ fn nothing_is_entered() {
 /// A run that goes on from its state makes the same bits, and so do any number of threads; detection beside the steps has them search anew.
 #[test]
 fn bodies_go_on_from_state() {
-    let world = assert_goes_on(FLYING, 20);
-    let late = stepped(started(FLYING, &["world.collisions=one_period_late"]), 40);
+    let world = assert_goes_on(&FLYING, 20);
+    let late = stepped(started(&FLYING, &["world.collisions=one_period_late"]), 40);
     assert!(world.state().systems[0].q == late.state().systems[0].q);
 }
 
@@ -145,7 +141,7 @@ fn wrong_bodies_are_refused() {
         (other("rigid = true, of = [\"ball\"]"), "one mass alone is held by nothing"),
         (other("rigid = true, yields_at = 1"), "this constraint does not give way"),
     ] {
-        match read(FLYING, &[&setting]) {
+        match read(&FLYING, &[&setting]) {
             Ok(_) => panic!("{setting} is taken"),
             Err(message) => assert!(message.contains(words), "{setting}: {message}"),
         }
@@ -157,7 +153,7 @@ fn wrong_bodies_are_refused() {
 fn wrong_types_are_told_once() {
     for constraint in ["rigid = \"yes\"", "faces = [{ of = [\"one\", \"two\"], hull = 1 }]"] {
         let setting = format!("networks.space.constraints=[{{ {constraint} }}]");
-        let Err(message) = read(FLYING, &[&setting]) else { panic!("{setting} is taken") };
+        let Err(message) = read(&FLYING, &[&setting]) else { panic!("{setting} is taken") };
         // an empty line is between two errors
         assert!(message.contains("true or false") && !message.contains("\n\n"), "{message}");
     }

@@ -1,14 +1,9 @@
 //! Slips of a scene of a network: what is misspelt, empty or of no size that can be computed with is refused with its place, and contradictions are told.
 
-use crate::worlds::{read, started};
+use crate::worlds::{DIE, T_SIMULATION, read, started};
 
 /// A mass on a spring.
-const SCENE: &str = r#"
-format = 1
-[world]
-period = "10 ms"
-[systems.main]
-stepper = "t_simulation"
+const SPRING: &str = r#"
 [networks.net.masses.post]
 positions = [[0, 0, 0]]
 mass = 1
@@ -28,15 +23,15 @@ duration = 1
 "#;
 
 fn refusal(setting: &str) -> String {
-    match read(SCENE, &[setting]) {
+    match read(&format!("{T_SIMULATION}{SPRING}"), &[setting]) {
         Ok(_) => panic!("{setting} is taken"),
         Err(message) => message,
     }
 }
 
-/// A parameter that a law does not name would change nothing.
+/// A parameter that a law does not name, or that acts nowhere, would change nothing; one that is no number makes no law.
 #[test]
-fn parameters_that_laws_do_not_name_are_refused() {
+fn parameters_that_laws_make_nothing_of_are_refused() {
     let law = |law: &str| format!("networks.net.links[0].law={{ {law} }}");
     for (law, place, words) in [
         (
@@ -86,6 +81,33 @@ fn parameters_that_laws_do_not_name_are_refused() {
     }
 }
 
+/// Units of parameters are those of their places in formulas, and what is wrong is shown there with what is wanted.
+#[test]
+fn parameters_have_the_units_of_their_place() {
+    let formula = |k: &str| {
+        format!(
+            "networks.net.links[0].law={{ name = \"formula\", push = \"-k*(D - L0)\", parameters = {{ k = {k} }} }}"
+        )
+    };
+    let states = |far: &str, loss: &str| {
+        format!(
+            "networks.net.links[0].law={{ name = \"finite_state\", states = {{ on = \"-k*(D - L0)\", off = \"0\" }}, transitions = {{ \"on -> off\" = \"D > far\" }}, \
+             losses = {{ on = \"{loss}\" }}, parameters = {{ k = \"3 N/m\", far = {far} }} }}"
+        )
+    };
+    for taken in [formula("3"), formula("\"3 N/m\""), states("\"2 m\"", "k*V*D"), states("2", "0.1*k")] {
+        assert!(read(&format!("{T_SIMULATION}{SPRING}"), &[&taken]).is_ok(), "{taken}");
+    }
+    for (law, words) in [
+        (formula("\"3 N\""), ["law.push", "an energy or torque", "a force", "`k` is a force"]),
+        (states("\"2 s\"", "0"), ["law.transitions", "`far`", "a length", "`far` is a time"]),
+        (states("2", "k*D"), ["law.losses.on", "is a force", "a power", "`k` is a stiffness"]),
+    ] {
+        let message = refusal(&law);
+        assert!(words.iter().all(|words| message.contains(words)), "{law}: {message}");
+    }
+}
+
 /// Numbers whose squares are none, and times and groups of nothing.
 #[test]
 fn numbers_of_no_size_are_refused() {
@@ -111,14 +133,6 @@ fn numbers_of_no_size_are_refused() {
 #[test]
 fn bodies_that_start_apart_are_told() {
     const DICE: &str = r#"
-format = 1
-[world]
-period = "10 ms"
-[systems.main]
-stepper = "t_simulation"
-[modules.die.masses.corners]
-lattice = { origin = [-0.1, -0.1, -0.1], spacing = 0.2, counts = [2, 2, 2] }
-mass = 0.1
 [networks.space.modules.one]
 module = "die"
 rotate = { axis = [1, 0.3, 0.2], angle = "40 deg" }
@@ -131,8 +145,9 @@ rigid = true
 [run]
 duration = 1
 "#;
+    let dice = format!("{T_SIMULATION}{DIE}{DICE}");
     let warnings = |settings: &[&str]| -> Vec<String> {
-        let scene = read(DICE, settings).unwrap_or_else(|message| panic!("{message}"));
+        let scene = read(&dice, settings).unwrap_or_else(|message| panic!("{message}"));
         scene.warnings.into_iter().filter(|warning| warning.contains("rigid")).collect()
     };
     let told = warnings(&[]);
@@ -145,7 +160,7 @@ duration = 1
     assert_eq!(warnings(&alike), Vec::<String>::new());
     assert_eq!(warnings(&["networks.space.constraints[0].of=[\"one\", \"two\"]"]), Vec::<String>::new());
     // what the rods take away is gone after a step
-    let mut world = started(DICE, &[]);
+    let mut world = started(&dice, &[]);
     world.step().unwrap();
     let velocities = &world.rows(0).velocities;
     let mean = velocities.iter().copied().sum::<souple_math::Vec3>() / 16.0;

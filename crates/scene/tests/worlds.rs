@@ -5,6 +5,22 @@ use std::path::Path;
 use souple_engine::World;
 use souple_scene::Scene;
 
+/// How most of these scenes begin.
+pub const T_SIMULATION: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+"#;
+
+/// A module: a cube of 0.2 m whose corners have 0.1 kg each.
+pub const DIE: &str = "
+[modules.die.masses.corners]
+lattice = { origin = [-0.1, -0.1, -0.1], spacing = 0.2, counts = [2, 2, 2] }
+mass = 0.1
+";
+
 pub fn read(text: &str, settings: &[&str]) -> Result<Scene, String> {
     let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
     souple_scene::read_text("constraints", text, Path::new("."), &settings)
