@@ -30,7 +30,8 @@ fn main() {
         let values =
             Values::new().with("stiffness", Value::Number(1000.0)).with("damping", Value::Number(0.1));
         let values = entry.values(values).unwrap();
-        let law = (entry.build)(&Making { values: &values, timestep, span: Span::Distance }).unwrap();
+        let law =
+            (entry.build)(&Making { values: &values, timestep, span: Span::Distance, driven: &[] }).unwrap();
         let force = Links::new(LinkDescription {
             name: "lattice".into(),
             law: law.into(),

@@ -19,7 +19,8 @@ const TE: f64 = 1e-3;
 
 /// A law of the table with numbers of the size of a metre and a kilonewton.
 fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
-    (entry.build)(&Making { values: &values(entry), timestep: TE, span: Span::Distance }).unwrap()
+    (entry.build)(&Making { values: &values(entry), timestep: TE, span: Span::Distance, driven: &[] })
+        .unwrap()
 }
 
 fn values(entry: &LinkEntry) -> Values {
@@ -515,7 +516,7 @@ fn automata_are_checked() {
             .with("transitions", Value::Texts(&transitions))
             .with("entries", Value::Texts(&entries));
         let values = entry.values(values).unwrap();
-        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance })
+        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] })
             .unwrap_err()
             .to_string()
     };
@@ -554,7 +555,7 @@ fn texts_of_laws_are_checked() {
             words.iter().for_each(|(name, text)| values.set(*name, Value::Text(text)));
             texts.iter().for_each(|(name, pairs)| values.set(*name, Value::Texts(pairs)));
             let values = entry.values(values).unwrap();
-            (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance })
+            (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] })
                 .map(|_| ())
                 .map_err(|error| error.to_string())
         };
@@ -672,7 +673,7 @@ fn pairs_remember_as_links_do() {
 #[test]
 fn driven_laws_are_laws_made_so() {
     for entry in LINKS.entries {
-        let recipe = Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance };
+        let recipe = Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance, driven: &[] };
         let drivable = recipe.drivable(&*law(entry));
         assert!(!drivable.is_empty(), "{}", entry.name);
         for name in drivable {
@@ -700,7 +701,12 @@ fn driven_laws_are_laws_made_so() {
                     }
                     values.set("parameters", Value::Texts(&texts));
                 }
-                let made = (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance });
+                let made = (entry.build)(&Making {
+                    values: &values,
+                    timestep: TE,
+                    span: Span::Distance,
+                    driven: &[],
+                });
                 // where these numbers make no law together, the driven one is at fault too
                 let Ok(made) = made else {
                     assert!(driven.fault(&[0.0, to]).is_some(), "{} {name} {to}", entry.name);
@@ -731,7 +737,7 @@ fn driven_laws_are_laws_made_so() {
 fn wrong_numbers_are_faults() {
     let recipe = |name: &str| {
         let entry = LINKS.find(name).unwrap();
-        Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance }
+        Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance, driven: &[] }
     };
     let driven = |name: &str, parameter: &str| {
         let wiring = Wiring { gain: None, parameters: vec![(parameter.to_owned(), 0)] };
@@ -747,10 +753,11 @@ fn wrong_numbers_are_faults() {
     assert!(driven("spring", "stiffness").is_conservative());
     let entry = LINKS.find("spring_damper").unwrap();
     let values = entry.values(values(entry).with("damping", Value::Number(0.0))).unwrap();
-    let undamped = (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap();
+    let undamped =
+        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] }).unwrap();
     assert!(undamped.is_conservative());
     let wiring = Wiring { gain: None, parameters: vec![("damping".to_owned(), 0)] };
-    let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance };
+    let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance, driven: &[] };
     assert!(!DrivenLaw::new(undamped, recipe, &wiring).is_conservative());
 }
 
@@ -768,7 +775,7 @@ fn what_was_stored_is_given_off() {
             .with("transitions", Value::Texts(&text(transitions)))
             .with("energies", Value::Texts(&text(&[("held", "20 * (D - 1)^2 / 2")])));
         let values = entry.values(values).unwrap();
-        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance }).unwrap()
+        (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] }).unwrap()
     };
     let held = ("held", "-20 * (D - 1)");
     // parts at 5 m/s, and is at 1.2 m after 40 ms

@@ -127,6 +127,31 @@ fn parameters_are_driven() {
     assert!(v < -0.05 && v > -0.062, "{v}");
 }
 
+/// A condition on a number that a control drives may come to hold, whatever the number begins with: what switches a state is another part of the object.
+#[test]
+fn driven_parameters_switch_states() {
+    let law = |go: f64| {
+        format!(
+            "{{ name = \"finite_state\", states = {{ open = \"0\", shut = \"-200*(D - L0)\" }}, parameters = {{ go = {go} }}, \
+             transitions = {{ \"open -> shut\" = \"go > 0.5\", \"shut -> open\" = \"go < 0.5\" }} }}"
+        )
+    };
+    let control = "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"go\"\nvalue = \"if(t < 9.5e-3 or t > 19.5e-3, 0, 1)\"\n";
+    for go in [0.0, 1.0] {
+        refused(&pulled(&law(go), ""), &["never fires"]);
+        let mut world = world(&pulled(&law(go), control));
+        let mut speed_after = |steps: usize| {
+            (0..steps).for_each(|_| world.step().unwrap());
+            world.state().systems[0].v[1].x
+        };
+        assert_eq!(speed_after(9), 0.0, "{go}");
+        let pulled = speed_after(11);
+        assert!(pulled < -0.1, "{go}: {pulled} m/s");
+        let free = speed_after(2);
+        assert_eq!(speed_after(5), free, "{go}");
+    }
+}
+
 /// The same bits from a snapshot on: what controls remember is State.
 #[test]
 fn driven_parameters_are_state() {

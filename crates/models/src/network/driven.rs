@@ -127,7 +127,8 @@ impl Recipe {
             }
         }
         let values = self.entry.values(values).map_err(|error| error.to_string())?;
-        let making = Making { values: &values, timestep: self.timestep, span: self.span };
+        let driven: Vec<String> = numbers.iter().map(|(register, _)| register.name()).collect();
+        let making = Making { values: &values, timestep: self.timestep, span: self.span, driven: &driven };
         (self.entry.build)(&making).map_err(|error| error.to_string())
     }
 }

@@ -108,6 +108,8 @@ pub struct Making<'a> {
     pub timestep: f64,
     /// What the length `D` of its links is.
     pub span: Span,
+    /// Parameters that controls drive: what is read of them is how they begin.
+    pub driven: &'a [String],
 }
 
 impl Making<'_> {

@@ -31,7 +31,11 @@ fn dimension_with(entry: &LinkEntry, first: usize) -> Option<usize> {
         }
     }
     let values = entry.values(values).ok()?;
-    Some((entry.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance }).ok()?.memory_len())
+    Some(
+        (entry.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance, driven: &[] })
+            .ok()?
+            .memory_len(),
+    )
 }
 
 #[cfg(test)]

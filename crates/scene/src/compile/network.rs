@@ -193,7 +193,11 @@ pub fn add_forces(
     let first = body.rows.start as u32;
     for (index, links) in body.links.iter().enumerate() {
         let table = &network.links[links.table];
-        let Some(law) = self::law(table.law.as_ref(), (timestep, table.span), draft) else { continue };
+        let driven = Driven::Links(table.name.as_str());
+        let parameters = controls::driven_parameters(network, &driven);
+        let Some(law) = self::law(table.law.as_ref(), (timestep, table.span), &parameters, draft) else {
+            continue;
+        };
         let masses = body.mesh.points.len() as u32;
         let is_viewed = links.ends.iter().flatten().any(|end| *end >= masses);
         let seen = is_viewed
@@ -202,7 +206,6 @@ pub fn add_forces(
             Some(seen) => seen.ends.clone(),
             None => links.ends.iter().map(|ends| ends.map(|end| first + end)).collect(),
         };
-        let driven = Driven::Links(table.name.as_str());
         let law =
             controls::driven(draft, body, network, driven, (law, table.law.as_ref()), (timestep, table.span));
         let links = Links::new(LinkDescription {
@@ -253,6 +256,7 @@ pub fn add_forces(
 fn law(
     chosen: Option<&Chosen<BuildLink>>,
     (timestep, span): (f64, Span),
+    driven: &[String],
     draft: &Draft,
 ) -> Option<Box<dyn LinkKernel>> {
     let chosen = chosen?;
@@ -266,7 +270,7 @@ fn law(
             return None;
         }
     }
-    match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span }) {
+    match (chosen.entry.build)(&Making { values: &chosen.values, timestep, span, driven }) {
         Ok(law) => Some(law),
         Err(error) => {
             let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
@@ -286,7 +290,8 @@ fn crowd(
     (timestep, listing): (f64, Listing),
     draft: &Draft,
 ) -> Option<Crowd> {
-    let law = self::law(spec.law.as_ref(), (timestep, Span::Distance), draft)?;
+    let parameters = controls::driven_parameters(network, &Driven::Crowds(spec.name.as_str()));
+    let law = self::law(spec.law.as_ref(), (timestep, Span::Distance), &parameters, draft)?;
     if law.asks_for() != AsksFor::default() {
         let message =
             "a condition asks where the ends are, and pairs of a crowd know how far apart they are alone";
@@ -501,9 +506,9 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
     let timestep = spec.world.period / f64::from(spec.systems[body.system].steps_per_period);
     let distance = |crowd: &CrowdSpec| {
         let chosen = crowd.law.as_ref()?;
-        (chosen.entry.build)(&Making { values: &chosen.values, timestep, span: Span::Distance })
-            .ok()?
-            .rest_distance()
+        let driven = controls::driven_parameters(network, &Driven::Crowds(crowd.name.as_str()));
+        let (values, span) = (&chosen.values, Span::Distance);
+        (chosen.entry.build)(&Making { values, timestep, span, driven: &driven }).ok()?.rest_distance()
     };
     let holds = |name: &String, group: &Range<u32>| {
         let numbers = network.numbers_of(name).unwrap_or(0..0);

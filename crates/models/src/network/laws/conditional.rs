@@ -582,7 +582,7 @@ mod tests {
             states.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect();
         let values =
             ENTRY.values(more.with("states", Value::Texts(&texts))).map_err(|error| error.to_string())?;
-        read(&Making { values: &values, timestep: TE, span: Span::Distance })
+        read(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] })
             .map_err(|error| error.to_string())
     }
 

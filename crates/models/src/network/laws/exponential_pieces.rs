@@ -111,7 +111,8 @@ mod tests {
                 .with("deepest", Value::Number(deepest));
             let values = ENTRY.values(values).unwrap();
             let law =
-                (ENTRY.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance }).unwrap();
+                (ENTRY.build)(&Making { values: &values, timestep: 1e-3, span: Span::Distance, driven: &[] })
+                    .unwrap();
             let push = |x: f64| {
                 let reach = Reach { length: 1.0 - x, before: 1.0 - x, rest: 1.0 };
                 law.respond(&reach, &Moment::of(0.0), &[]).push

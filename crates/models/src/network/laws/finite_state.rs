@@ -226,7 +226,8 @@ pub const ENTRY: LinkEntry = LinkEntry {
             "numbers that are remembered, with what they are at the start; L0 is always one",
         )
         .or(Value::Texts(&[])),
-        Parameter::texts("parameters", "numbers that do not change").or(Value::Texts(&[])),
+        Parameter::texts("parameters", "numbers that do not change, unless a control drives them")
+            .or(Value::Texts(&[])),
     ],
     build: |making| Ok(Box::new(OneByOne(read(making)?))),
 };
@@ -313,7 +314,7 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     let unknowns = VARIABLES.len() + remembered.len();
     for (state, name) in states.iter_mut().zip(&state_names) {
         let place = format!("states.{name}");
-        check_that_all_fire(state, &place, &state_names, &variables, &constants, making.least_length())?;
+        check_that_all_fire(state, &place, &state_names, &variables, &constants, making)?;
         if state.is_slack() {
             let bound = |(condition, _): &(Condition, usize)| {
                 bound_below(condition, &variables, &constants, unknowns)
@@ -403,14 +404,26 @@ fn check_that_all_fire(
     names: &[&str],
     variables: &[&str],
     constants: &[f64],
-    least_length: f64,
+    making: &Making,
 ) -> Result<(), LinkError> {
+    let least_length = making.least_length();
+    // what a control drives may be anything
+    let is_driven = |name: &str| making.driven.iter().any(|driven| driven == name);
+    let (unknowns, parameters) = variables.split_at(variables.len() - constants.len());
+    let known = || parameters.iter().zip(constants).filter(|(name, _)| !is_driven(name));
+    let variables: Vec<&str> = unknowns
+        .iter()
+        .chain(parameters.iter().filter(|name| is_driven(name)))
+        .chain(known().map(|(name, _)| name))
+        .copied()
+        .collect();
+    let constants: Vec<f64> = known().map(|(_, number)| *number).collect();
     let low = |name: &str| match name {
         "D" | "D_before" => least_length,
         "t" | "Te" => 0.0,
         _ => f64::NEG_INFINITY,
     };
-    let mut questions = Questions::new(variables, constants, low);
+    let mut questions = Questions::new(&variables, &constants, low);
     let truths: Vec<Truth> =
         state.transitions.iter().map(|(condition, _)| questions.read(condition.text())).collect();
     for (at, (condition, to)) in state.transitions.iter().enumerate() {
@@ -419,7 +432,7 @@ fn check_that_all_fire(
             continue;
         }
         let why = if !questions.can_hold(&truths[at], &[]) {
-            let mut without_lengths = Questions::new(variables, constants, |_| f64::NEG_INFINITY);
+            let mut without_lengths = Questions::new(&variables, &constants, |_| f64::NEG_INFINITY);
             let alone = without_lengths.read(said);
             let is_distance = least_length == 0.0 && without_lengths.can_hold(&alone, &[]);
             let hint = if is_distance { ", and distances in space are not below 0" } else { "" };

@@ -11,8 +11,10 @@ use souple_models::network::{Making, Span};
 use souple_table::counted;
 
 use super::super::Draft;
+use super::controls::driven_parameters;
 use super::{PlacedLinks, ends};
 use crate::spec::body::Body;
+use crate::spec::control::Driven;
 use crate::spec::network::{CrowdSpec, Network};
 
 /// What two masses are apart at most that count as at one place, along each axis [m].
@@ -74,7 +76,7 @@ pub fn crowds(body: &Body, network: &Network, places: &[Vec3], draft: &Draft) ->
     let told = |index: usize| {
         let crowd = &network.crowds[index];
         let (first, second) = ends::groups(&crowd.of, network)?;
-        let clusters = clusters(places, apart(largest, range(crowd, draft)));
+        let clusters = clusters(places, apart(largest, range(crowd, network, draft)));
         let met = clusters.iter().filter_map(|cluster| meeting(cluster, &first, &second, &is_fixed));
         let met: Vec<[u32; 2]> = met.collect();
         let first = *met.first()?;
@@ -95,11 +97,12 @@ pub fn crowds(body: &Body, network: &Network, places: &[Vec3], draft: &Draft) ->
 }
 
 /// Beyond which masses of a crowd want nothing of each other [m]; zero where that is not known.
-fn range(crowd: &CrowdSpec, draft: &Draft) -> f64 {
+fn range(crowd: &CrowdSpec, network: &Network, draft: &Draft) -> f64 {
     let of_law = || {
         let chosen = crowd.law.as_ref()?;
-        let making =
-            Making { values: &chosen.values, timestep: draft.spec.world.period, span: Span::Distance };
+        let driven = driven_parameters(network, &Driven::Crowds(crowd.name.as_str()));
+        let (values, timestep, span) = (&chosen.values, draft.spec.world.period, Span::Distance);
+        let making = Making { values, timestep, span, driven: &driven };
         // what cannot be built is told elsewhere
         (chosen.entry.build)(&making).ok().map(|law| law.range())
     };

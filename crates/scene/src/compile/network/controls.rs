@@ -32,6 +32,15 @@ fn first_driven(spec: &Spec, body: &Placed) -> usize {
     CONTROL_LEN * before.filter_map(|body| body.network.as_ref()).map(|n| n.controls.len()).sum::<usize>()
 }
 
+/// Names of the parameters that controls drive of the law of links or crowds.
+pub fn driven_parameters(network: &Network, of: &Driven<&str>) -> Vec<String> {
+    let of_control = |control: &ControlSpec| match &control.drives {
+        Some(Drives::Parameter { name, .. }) => Some(name.clone()),
+        _ => None,
+    };
+    network.controls.iter().filter(|control| control.of.is(of)).filter_map(of_control).collect()
+}
+
 /// A law as controls drive it, of links or crowds.
 pub fn driven(
     draft: &Draft,
