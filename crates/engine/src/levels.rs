@@ -141,6 +141,9 @@ pub trait Levels: Send + Sync {
     /// Rows of the points of all meshes.
     fn rows(&self) -> Range<usize>;
 
+    /// The shortest interval that one of its points needs to be stable at rest, whichever of them are at work [s]: ticks are no longer.
+    fn shortest_interval(&self) -> f64;
+
     /// Chooses the active points by the rows as they stand, and gets lists ready for steps so divided. Where others are
     /// active then, all rows follow anew; velocities are corrected by what that would do to the momentum.
     fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch);

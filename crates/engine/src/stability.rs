@@ -11,11 +11,12 @@ use crate::system::{Surroundings, System, SystemWorkspace};
 /// What the highest frequency allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forecast {
-    /// Highest angular frequency of `M⁻¹ K` [rad/s], from below.
+    /// Highest angular frequency of `M⁻¹ K` [rad/s], from below; of bodies with levels, with the points that are at work in this state.
     pub highest_frequency: f64,
     /// Highest rate of damping, of `M⁻¹ B` [1/s], from below.
     pub highest_damping: f64,
-    /// The longest stable step of the system's stepper [s]; infinite where any step is stable.
+    /// The longest stable step of the system's stepper [s]; infinite where any step is stable. Of one that divides its steps for the points
+    /// of bodies with levels, the longest that its shortest interval may be.
     pub longest_step: f64,
     /// The force that has the most to say in what the longest step is of, the fastest oscillation or the strongest damping, by its number.
     pub stiffest: Option<usize>,
@@ -34,6 +35,9 @@ pub const MARGIN: f64 = 0.95;
 /// whatever carries the rows. What may touch later counts as if all of it touched at once, by
 /// [`crate::Force::touching_stiffness`]; how it would damp then does not.
 ///
+/// Which points of bodies with levels are at work changes: their own bound is one for all of them,
+/// [`crate::levels::Levels::shortest_interval`], and what acts on them from outside is looked at as they are.
+///
 /// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
 /// so the step it allows is taken with a margin of 5 %.
 pub fn forecast(
@@ -49,7 +53,7 @@ pub fn forecast(
     let is_damped = system.forces.iter().any(|force| force.declaration().velocity_terms);
     let (highest_damping, of_damping) =
         if is_damped { highest_eigenvalue(system, state, around, ws, damping) } else { (0.0, None) };
-    let longest_step = match system.stepper.stability() {
+    let longest = match system.stepper.stability() {
         Stability::Unconditional => f64::INFINITY,
         Stability::Limited(limit) => MARGIN * longest_step(highest_frequency / limit, highest_damping),
         // growth exp(factor ω^(power + 1) h^power t): a tenth a second, and what is damped still falls, h γ < 2
@@ -62,16 +66,23 @@ pub fn forecast(
     let is_of_damping = match system.stepper.stability() {
         Stability::Unconditional => false,
         Stability::Limited(limit) => {
-            0.5 * longest_step * highest_damping > (longest_step * highest_frequency / limit).powi(2)
+            0.5 * longest * highest_damping > (longest * highest_frequency / limit).powi(2)
         }
-        Stability::Growing { .. } => 0.5 * longest_step * highest_damping > 0.5,
+        Stability::Growing { .. } => 0.5 * longest * highest_damping > 0.5,
     };
-    Forecast {
-        highest_frequency,
-        highest_damping,
-        longest_step,
-        stiffest: if is_of_damping { of_damping } else { of_stiffness },
-    }
+    let stiffest = if is_of_damping { of_damping } else { of_stiffness };
+    let (longest_step, stiffest) = match shortest_of_levels(system) {
+        Some((needed, body)) if needed <= longest => (needed, Some(body)),
+        _ => (longest, stiffest),
+    };
+    Forecast { highest_frequency, highest_damping, longest_step, stiffest }
+}
+
+/// The shortest interval that the points of a body with levels need [s], and the number of its force.
+fn shortest_of_levels(system: &System) -> Option<(f64, usize)> {
+    let bodies = system.forces.iter().enumerate();
+    let needed = bodies.filter_map(|(index, force)| Some((force.levels()?.shortest_interval(), index)));
+    needed.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The step at which `(h ω / limit)² + h γ / 2 = 1`: exact for symplectic Euler, whose force sees the velocity

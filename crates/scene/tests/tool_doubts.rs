@@ -149,3 +149,21 @@ fn moduli_beyond_all_steps_are_named() {
     };
     assert!(errors.contains("youngs_modulus") && errors.contains("is its unit right?"), "{errors}");
 }
+
+/// Of bodies with levels the step that is forecast is the one by which steps are refused: a scene with as many halvings as come below it is built, with one less
+/// it is not.
+#[test]
+fn intervals_are_forecast_as_they_are_refused() {
+    let of = |halvings: f64| {
+        let text = LAYERED.replace("halvings = 9", &format!("halvings = {halvings}"));
+        read_text("scene.toml", &text, Path::new("."), &[])
+    };
+    let scene = of(9.0).unwrap_or_else(|errors| panic!("{errors}"));
+    let mut world = scene.model.start(scene.state);
+    let longest = world.with_system(0, souple_engine::stability::forecast).longest_step;
+    let enough = (1e-2 / longest).log2().ceil();
+    assert!((1.0..9.0).contains(&enough), "{longest}");
+    assert!(of(enough).is_ok_and(|scene| scene.warnings.is_empty()));
+    let refused = of(enough - 1.0).err().map(|errors| errors.to_string()).unwrap_or_default();
+    assert!(refused.contains(&format!("some points need {longest:.3e} s")), "{longest} {refused}");
+}

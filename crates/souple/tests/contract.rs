@@ -88,7 +88,10 @@ fn one_document_each() {
 
     let check = json(&["check", &scene]);
     assert_keys(&check, &["valid", "title", "scene", "counts", "systems", "steps", "forecast", "warnings"]);
-    assert_list(&check["systems"], &["name", "stepper", "timestep_seconds", "longest_stable_step_seconds"]);
+    let system =
+        ["name", "stepper", "timestep_seconds", "shortest_interval_seconds", "longest_stable_step_seconds"];
+    assert_list(&check["systems"], &system);
+    assert_keys(&check["forecast"], &["seconds_per_step", "load", "wall_seconds", "measured_steps", "bytes"]);
 
     let page = ["kind", "name", "summary", "source", "parameters"];
     for kind in

@@ -193,11 +193,6 @@ impl LevelsForce {
         &self.share_of_moduli
     }
 
-    /// The shortest interval that some point needs, whichever level is at work [s].
-    pub fn shortest_interval(&self) -> f64 {
-        self.shortest_interval
-    }
-
     /// Stresses that a step so divided evaluates with the coarsest mesh at work wherever so many cuts let it: no budget comes to less.
     pub fn least_evaluations(&self, division: &Division, cuts: usize) -> usize {
         let mut memory = vec![0.0; self.memory_len()];

@@ -94,6 +94,10 @@ impl Levels for LevelsForce {
         self.row_range()
     }
 
+    fn shortest_interval(&self) -> f64 {
+        self.shortest_interval
+    }
+
     fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch) {
         let work = self.work(scratch);
         work.refresh(self, memory);

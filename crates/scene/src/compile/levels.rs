@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use souple_engine::Force;
-use souple_engine::levels::{Division, Pace};
+use souple_engine::levels::{Division, Levels, Pace};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use souple_engine::levels::Levels;
 use souple_engine::{Force, Mass};
 use souple_mesh::{Group, Mesh};
 use souple_models::materials::{AnyLaw, MaterialLaw};

@@ -51,6 +51,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let networks = scene.networks.clone();
     let mut warnings = scene.warnings.clone();
     let duration = scene.run.duration;
+    let hands: Vec<String> = scene.hands.iter().map(|hand| hand.name.clone()).collect();
     let period = scene.model.period;
     let mut world = scene.model.start(scene.state);
     let mut systems = Vec::new();
@@ -62,6 +63,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
                 "name": system.name,
                 "stepper": system.stepper.name(),
                 "timestep_seconds": timestep,
+                "shortest_interval_seconds": system.stepper.interval(timestep),
                 "velocity_blocks": system.kinematics.block_count(),
                 "forces": system.forces.iter().map(|force| force.name().to_owned()).collect::<Vec<_>>(),
                 "highest_frequency_rad_per_second": forecast.highest_frequency,
@@ -128,6 +130,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "steps": steps,
         "forecast": {
             "seconds_per_step": trial.seconds_per_step,
+            "load": trial.seconds_per_step / period,
             "probes_seconds_per_period": measuring,
             "wall_seconds": trial.seconds_of(steps) + measuring * (steps + 1) as f64,
             "measured_steps": trial.steps,
@@ -173,13 +176,15 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
             let whatever = safe.filter(|safe| *safe < step);
             let whatever =
                 whatever.map_or_else(String::new, |safe| format!("; {safe:.3e} s is safe whatever acts"));
-            format!("longest stable step {step:.3e} s{of}{whatever}")
+            let what =
+                if is_divided(system) { "stable where that is at most" } else { "longest stable step" };
+            format!("{what} {step:.3e} s{of}{whatever}")
         });
         print_line(format_args!(
-            "  system {}: {} at {:.3e} s; {stable}",
+            "  system {}: {} at {}; {stable}",
             system["name"].as_str().unwrap_or_default(),
             system["stepper"].as_str().unwrap_or_default(),
-            system["timestep_seconds"].as_f64().unwrap_or_default(),
+            steps_of(system),
         ));
     }
     for (body, (name, law)) in texts_of_table(&bodies) {
@@ -230,7 +235,41 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         souple_table::counted(steps, "step"),
         world.bytes() as f64 * 1e-6
     ));
+    if let Some(late) = told_late(&hands, trial.seconds_per_step, period) {
+        print_line(format_args!("  {late}"));
+    }
     Ok(end_of(&errors))
+}
+
+/// That hands would be late against the clock, where a period takes longer than it is [s], by what was measured; no warning, as another machine
+/// may be in time.
+fn told_late(hands: &[String], seconds: f64, period: f64) -> Option<String> {
+    let is_late = !hands.is_empty() && seconds > period;
+    is_late.then(|| {
+        let names: Vec<String> = hands.iter().map(|hand| format!("`{hand}`")).collect();
+        format!(
+            "load {:.0} %: a period of {:.2} ms takes about {:.2} ms here, and against the clock the world comes late for {}",
+            100.0 * seconds / period,
+            1e3 * period,
+            1e3 * seconds,
+            names.join(", ")
+        )
+    })
+}
+
+/// How long the steps of a system are, and the shortest of their parts where points have steps of their own.
+fn steps_of(system: &Value) -> String {
+    let seconds = |key: &str| system[key].as_f64().unwrap_or_default();
+    let [step, shortest] = [seconds("timestep_seconds"), seconds("shortest_interval_seconds")];
+    if is_divided(system) {
+        format!("{step:.3e} s, its points at parts of it down to {shortest:.3e} s")
+    } else {
+        format!("{step:.3e} s")
+    }
+}
+
+fn is_divided(system: &Value) -> bool {
+    system["shortest_interval_seconds"] != system["timestep_seconds"]
 }
 
 /// Conditions beyond which a matrix is singular to rounding.
@@ -463,5 +502,28 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
                 "      {name} = {physical:.4e} {unit}, {algorithmic:.4e} with a step as the unit of time"
             ));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Late is what takes longer than a period, where somebody waits for it.
+    #[test]
+    fn lateness_is_of_hands() {
+        let hands = ["right".to_owned()];
+        assert_eq!(told_late(&hands, 0.9e-3, 1e-3), None);
+        assert_eq!(told_late(&[], 2e-3, 1e-3), None);
+        let told = told_late(&hands, 2e-3, 1e-3).unwrap_or_default();
+        assert!(told.starts_with("load 200 %: a period of 1.00 ms takes about 2.00 ms"), "{told}");
+    }
+
+    /// Of a stepper whose points have steps of their own the shortest is told, of others the step alone.
+    #[test]
+    fn steps_are_told_with_their_parts() {
+        let of = |shortest: f64| json!({ "timestep_seconds": 1e-2, "shortest_interval_seconds": shortest });
+        assert_eq!(steps_of(&of(1e-2)), "1.000e-2 s");
+        assert_eq!(steps_of(&of(2.5e-3)), "1.000e-2 s, its points at parts of it down to 2.500e-3 s");
     }
 }

@@ -116,11 +116,6 @@ impl OctreeForce {
         &self.tree
     }
 
-    /// The shortest interval that some particle needs, whichever level is at work [s].
-    pub fn shortest_interval(&self) -> f64 {
-        self.intervals.iter().copied().fold(f64::INFINITY, f64::min)
-    }
-
     /// Particles that can be divided: memory has a number for each, and then how long particles stay.
     fn coarser_count(&self) -> usize {
         self.tree.count() - self.tree.finest_count()

@@ -63,6 +63,10 @@ impl Levels for OctreeForce {
         self.row_range()
     }
 
+    fn shortest_interval(&self) -> f64 {
+        self.intervals.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
     fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch) {
         let work = self.work(scratch);
         work.refresh(self, memory);
