@@ -45,6 +45,8 @@ pub(super) struct Face {
     waiting: Vec<u32>,
 }
 
+/// How many vectors [`Face`] has.
+const VECTORS: usize = 6;
 /// Of what a change moves alone, what it moves in fact, where it meets no resistance but that of rounding and of what is left of the rest.
 const NO_RESISTANCE: f64 = 1e-13;
 /// Of the size of all changes of forces, weighed by what they move alone, what one has in a contradiction: more than what is left of the rest may have,
@@ -76,15 +78,14 @@ impl Face {
         }
     }
 
-    fn vectors_mut(&mut self) -> [&mut Vec<Vec3>; 6] {
+    fn vectors_mut(&mut self) -> [&mut Vec<Vec3>; VECTORS] {
         let Self { residual, alone, moved_alone, direction, product, product_alone, .. } = self;
         [residual, alone, moved_alone, direction, product, product_alone]
     }
 
     pub(super) fn bytes(&self) -> usize {
-        let Self { residual, alone, moved_alone, direction, product, product_alone, .. } = self;
-        let vectors = [residual, alone, moved_alone, direction, product, product_alone];
-        size_of::<Vec3>() * vectors.map(Vec::capacity).iter().sum::<usize>()
+        // they grow together, each to as many as the others
+        VECTORS * size_of::<Vec3>() * self.residual.capacity()
             + size_of::<Free>() * self.free.capacity()
             + self.together.capacity()
             + 4 * self.waiting.capacity()
