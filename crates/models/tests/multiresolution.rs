@@ -11,7 +11,7 @@ use souple_engine::{
 };
 use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
-use souple_mesh::coarsen::coarser;
+use souple_mesh::coarsen::{coarser, mean_edge};
 use souple_mesh::fill::{Options, PARAMETERS};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::{Mesh, generate};
@@ -49,13 +49,18 @@ fn cube(cells: f64) -> Mesh {
 
 /// A ball and what fills it more coarsely: nothing is nested, and points of each mesh stick out of the others.
 fn balls() -> Vec<Mesh> {
-    let entry = SHAPES.find("ellipsoid").unwrap();
-    let values = entry.values(Values::new().with("semi_axes", Value::Vector([0.05; 3]))).unwrap();
-    let size = Values::new().with("size", Value::Number(0.01)).completed(PARAMETERS).unwrap();
-    let options = Options::from_values(&size).unwrap();
-    let mut fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
-    fine.validate().unwrap();
+    let fine = ellipsoid([0.05; 3], 0.01);
     vec![coarser(&fine, 0.036).unwrap(), coarser(&fine, 0.018).unwrap(), fine]
+}
+
+fn ellipsoid(semi_axes: [f64; 3], size: f64) -> Mesh {
+    let entry = SHAPES.find("ellipsoid").unwrap();
+    let values = entry.values(Values::new().with("semi_axes", Value::Vector(semi_axes))).unwrap();
+    let size = Values::new().with("size", Value::Number(size)).completed(PARAMETERS).unwrap();
+    let options = Options::from_values(&size).unwrap();
+    let mut mesh = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
+    mesh.validate().unwrap();
+    mesh
 }
 
 fn fixed(level: &str) -> Choice {
@@ -556,6 +561,22 @@ fn coarse_meshes_yield_as_the_finest() {
     let a = |share: f64, h_sq: f64| (1.0 - share) / (share * h_sq - 1.0);
     // two cells across are far from the limit, which is approached from below
     assert!((0.5..1.0).contains(&(a(coarse, 16.0) / a(middle, 4.0))), "{coarse} {middle}");
+}
+
+/// Coarse points at the ends of an ellipsoid have next to no matter to hold them, and yield without end to what hangs on them: no level is made stiffer for
+/// that, nor its steps any shorter than with the moduli of its own.
+#[test]
+fn coarse_meshes_are_never_stiffened() {
+    for (semi_axes, size, ratio) in [([0.05, 0.03, 0.035], 0.01, 1.8), ([0.06, 0.03, 0.03], 0.009, 1.6_f64)] {
+        let fine = ellipsoid(semi_axes, size);
+        let coarse = |finer: i32| coarser(&fine, mean_edge(&fine) * ratio.powi(finer)).unwrap();
+        let meshes = [coarse(2), coarse(1), fine.clone()];
+        let of = |stiffness| body_of(&meshes, Coupling::Transpose, fixed("0"), stiffness);
+        let (own, softened) = (of(Stiffness::Own), of(Stiffness::AsFinest));
+        let shares = softened.share_of_moduli();
+        assert!(shares.iter().all(|share| *share > 0.0 && *share <= 1.0), "{semi_axes:?} {shares:?}");
+        assert!(softened.shortest_interval() >= own.shortest_interval(), "{semi_axes:?} {shares:?}");
+    }
 }
 
 /// A contact that tells what it reaches, or says that it reaches everything; it counts how often it is asked.
