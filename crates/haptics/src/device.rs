@@ -88,7 +88,7 @@ static EMULATED: Entry<ChooseDevice> = Entry {
             "lost_at",
             "s",
             Range::NOT_NEGATIVE,
-            "when the device is lost; 0 without `lost_for`: never",
+            "when the device is lost; 0 with `lost_for`: from the start, without it never",
         )
         .or(Value::Number(0.0)),
         Parameter::number(

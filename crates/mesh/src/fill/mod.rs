@@ -30,7 +30,7 @@ use souple_math::Vec3;
 use souple_table::four_digits;
 
 use crate::implicit::Shape;
-use crate::{ElementKind, Group, MAX_CELLS, Mesh, available_memory, gigabytes};
+use crate::{ElementKind, Group, MAX_CELLS, Mesh, USUAL_SIZES, available_memory, gigabytes};
 
 pub use options::{Filled, Options, PARAMETERS};
 pub(crate) use surface::carry_groups;
@@ -119,13 +119,13 @@ pub enum FillError {
     #[error("the shape's bounds go from {low:?} to {high:?}; expected a box of finite size")]
     Bounds { low: [f64; 3], high: [f64; 3] },
     #[error(
-        "cells of {} m in a box of {} ask for {requested:.1e} lattice points; expected at most {limit:e}: a larger size",
-        four_digits(*.size), metres(.extent)
+        "cells of {} m in a box of {} ask for {requested:.1e} lattice points; expected at most {limit:e}: a larger size{}",
+        four_digits(*.size), metres(.extent), or_metres(.extent)
     )]
     TooManyPoints { size: f64, extent: [f64; 3], requested: f64, limit: f64 },
     #[error(
-        "cells of {} m in a box of {} make about {requested:.1e} of them; expected at most {limit:.0e}: a larger size, or `growth`",
-        four_digits(*.size), metres(.extent)
+        "cells of {} m in a box of {} make about {requested:.1e} of them; expected at most {limit:.0e}: a larger size, or `growth`{}",
+        four_digits(*.size), metres(.extent), or_metres(.extent)
     )]
     TooManyCells { size: f64, extent: [f64; 3], requested: f64, limit: f64 },
     #[error(
@@ -166,6 +166,15 @@ pub enum FillError {
 fn metres(extent: &[f64; 3]) -> String {
     let [x, y, z] = extent.map(four_digits);
     format!("{x} x {y} x {z} m")
+}
+
+/// What else would do of a shape that is hardly in metres.
+fn or_metres([x, y, z]: &[f64; 3]) -> &'static str {
+    if x.max(*y).max(*z) > USUAL_SIZES[1] {
+        "; or a shape in metres: one in millimetres takes scale = 0.001"
+    } else {
+        ""
+    }
 }
 
 impl Size {

@@ -571,7 +571,7 @@ fn neighbour_friction(draft: &Draft, body: &Placed, mass: &Mass) -> Option<Neigh
         if !is_explicit {
             return refuse("`friction_filter` has no tangent", "an explicit stepper, or no filter");
         }
-        let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+        let timestep = draft.timestep(system);
         FrictionFilter::Drop { timestep }
     } else {
         FrictionFilter::None

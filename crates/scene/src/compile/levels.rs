@@ -10,7 +10,7 @@ use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
 use souple_mesh::{BoundingBox, Mesh, OpeningSurface};
 use souple_models::multiresolution::{Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
-use souple_table::{Value, four_digits};
+use souple_table::{Value, four_digits, readable};
 
 use super::bodies::{BodyMaterials, Placed, solid_name};
 use super::{Draft, shape};
@@ -196,10 +196,12 @@ pub(super) fn check_fixed(
     let Some(fixed) = fixed else { return };
     let finest = (count - 1) as f64;
     let of = |place: &Vec3| (*place, fixed.evaluate(&place.to_array()));
-    if let Some((place, level)) = places.iter().map(of).find(|(_, level)| !(0.0..=finest).contains(level)) {
-        let [x, y, z] = place.to_array();
-        let message = format!("`fixed` is {level} at x = {x}, y = {y}, z = {z}");
-        draft.log.add(Code::OutOfRange, site, message, format!("levels from 0, the coarsest, to {finest}"));
+    let is_level = |level: f64| (0.0..=finest).contains(&level) && level.fract() == 0.0;
+    if let Some((place, level)) = places.iter().map(of).find(|(_, level)| !is_level(*level)) {
+        let [x, y, z] = place.to_array().map(readable);
+        let message = format!("`fixed` is {} at x = {x}, y = {y}, z = {z}", readable(level));
+        let expected = format!("whole numbers of levels from 0, the coarsest, to {finest}");
+        draft.log.add(Code::OutOfRange, site, message, expected);
     }
 }
 
@@ -207,7 +209,7 @@ pub(super) fn check_fixed(
 fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpec, force: &LevelsForce) {
     let Some(stepper) = &system.stepper else { return };
     let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return };
-    let step = draft.spec.world.period / f64::from(system.steps_per_period);
+    let step = draft.timestep(system);
     let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval());
     if tick > needed {
         let enough = (step / needed).log2().ceil();
@@ -235,59 +237,108 @@ fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpe
     }
 }
 
-/// Says where a budget is below what the coarsest mesh needs, cuts, or the finest until the body has settled: these are at work all the same.
-pub fn warn_of_budgets(draft: &mut Draft) {
-    let doubt = |body: &Placed| {
-        let spec = body.spec.levels.as_ref()?;
-        let (budget, name) = (spec.budget?, &body.spec.name);
-        let (force, division) = levels_of(draft, body)?;
-        let least = force.least_evaluations(&division, 0);
-        let beside_cuts = force.least_evaluations(&division, force.cut_count());
-        let settles = spec.criterion.settled.filter(|date| *date > 0.0);
-        let finest = settles.map_or(0, |_| force.finest_evaluations(&division));
-        let place = draft.place(&spec.site);
-        Some(if budget < least as f64 {
-            format!(
-                "{place}: a step of body `{name}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
-                 stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
-                 `ratio`) or fewer `halvings` would need less"
-            )
-        } else if budget < beside_cuts as f64 {
-            format!(
-                "{place}: a step of body `{name}` evaluates {beside_cuts} stresses once all of its cuts are made, whatever its budget of {budget} says: \
-                 where a cut runs the finest mesh is at work; against the clock the world may come late; a larger budget, a smaller cut \
-                 or fewer `halvings` would fit"
-            )
-        } else if budget < finest as f64 {
-            format!(
-                "{place}: a step of body `{name}` evaluates {finest} stresses until it has settled at {} s, whatever its budget of {budget} says: \
-                 the finest mesh is at work until then; against the clock the world may come late; a larger budget, an earlier date, \
-                 a coarser finest mesh or fewer `halvings` would fit",
-                settles.unwrap_or(0.0)
-            )
-        } else {
-            return None;
-        })
+/// What is said of a body's levels, and where.
+type Doubt = for<'a> fn(&Draft, &Placed, &'a LevelsSpec) -> Vec<(&'a Site, String)>;
+
+/// Says what of levels cannot be as it is written.
+pub fn warn(draft: &mut Draft) {
+    let of_all = |doubt: Doubt| {
+        let levels = draft.bodies.iter().filter_map(|body| Some((body, body.spec.levels.as_ref()?)));
+        let found: Vec<(&Site, String)> = levels.flat_map(|(body, spec)| doubt(draft, body, spec)).collect();
+        found.into_iter().map(|(site, words)| format!("{}: {words}", draft.place(site))).collect::<Vec<_>>()
     };
-    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
-    draft.warnings.extend(doubts);
+    let doubts: [Doubt; 4] = [doubts_of_budget, doubts_of_settling, doubts_of_late_cuts, doubts_of_cuts];
+    let said: Vec<String> = doubts.into_iter().flat_map(of_all).collect();
+    draft.warnings.extend(said);
 }
 
-/// Says where a run ends before a body has settled.
-pub fn warn_of_settling(draft: &mut Draft) {
-    let duration = draft.spec.run.duration;
-    let doubt = |body: &Placed| {
-        let spec = body.spec.levels.as_ref()?;
-        let settled = spec.criterion.settled.filter(|settled| *settled >= duration)?;
-        Some(format!(
-            "{}: body `{}` has settled at {settled} s, and `run.duration` is {duration} s: within that the finest mesh is at work all the while; an earlier date would let it be \
-             coarse",
-            draft.place(&spec.site),
-            body.spec.name
-        ))
+/// A budget is below what the coarsest mesh needs, cuts, or the finest until the body has settled: these are at work all the same.
+fn doubts_of_budget<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
+    let (Some(budget), Some((force, division))) = (spec.budget, levels_of(draft, body)) else {
+        return Vec::new();
     };
-    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
-    draft.warnings.extend(doubts);
+    let name = &body.spec.name;
+    let least = force.least_evaluations(&division, 0);
+    let beside_cuts = force.least_evaluations(&division, force.cut_count());
+    let settles = spec.criterion.settled.filter(|date| *date > 0.0);
+    let finest = settles.map_or(0, |_| force.finest_evaluations(&division));
+    let words = if budget < least as f64 {
+        format!(
+            "a step of body `{name}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
+             stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
+             `ratio`) or fewer `halvings` would need less"
+        )
+    } else if budget < beside_cuts as f64 {
+        format!(
+            "a step of body `{name}` evaluates {beside_cuts} stresses once all of its cuts are made, whatever its budget of {budget} says: \
+             where a cut runs the finest mesh is at work; against the clock the world may come late; a larger budget, a smaller cut \
+             or fewer `halvings` would fit"
+        )
+    } else if budget < finest as f64 {
+        format!(
+            "a step of body `{name}` evaluates {finest} stresses until it has settled at {} s, whatever its budget of {budget} says: \
+             the finest mesh is at work until then; against the clock the world may come late; a larger budget, an earlier date, \
+             a coarser finest mesh or fewer `halvings` would fit",
+            settles.unwrap_or(0.0)
+        )
+    } else {
+        return Vec::new();
+    };
+    vec![(&spec.site, words)]
+}
+
+/// A run ends before a body has settled, or its first step does not end before.
+fn doubts_of_settling<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
+    let (duration, name) = (draft.spec.run.duration, &body.spec.name);
+    let Some(settled) = spec.criterion.settled else { return Vec::new() };
+    let step = draft.spec.systems.get(body.system).map_or(0.0, |system| draft.timestep(system));
+    let words = if settled >= duration {
+        format!(
+            "body `{name}` has settled at {} s, and `run.duration` is {} s: within that the finest mesh is at work all the while; an earlier date would let it be \
+             coarse",
+            readable(settled),
+            readable(duration)
+        )
+    } else if settled > 0.0 && settled <= step {
+        format!(
+            "body `{name}` has settled at {} s, and its first step ends at {} s: what its own loads have made by then is hardly begun, and the rest counts; a date at which it hangs \
+             still would leave it out",
+            readable(settled),
+            readable(step)
+        )
+    } else {
+        return Vec::new();
+    };
+    vec![(&spec.site, words)]
+}
+
+/// A run ends before a cut is made.
+fn doubts_of_late_cuts<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
+    let (duration, name) = (draft.spec.run.duration, &body.spec.name);
+    let late = spec.cuts.iter().filter(|cut| cut.time >= duration);
+    let words = |cut: &CutSpec| {
+        format!(
+            "a cut of body `{name}` is made at {} s, and `run.duration` is {} s: within that it is not",
+            readable(cut.time),
+            readable(duration)
+        )
+    };
+    late.map(|cut| (&cut.site, words(cut))).collect()
+}
+
+/// Cuts go through all cells of a body: from then on it is loose points, which nothing touches.
+fn doubts_of_cuts<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
+    let at = cut_at(draft, body);
+    let Some(last) = at.iter().copied().reduce(f64::max).filter(|last| last.is_finite()) else {
+        return Vec::new();
+    };
+    let words = format!(
+        "the cuts of body `{}` go through all of its {} cells: from {last} s on its points fall alone, and it has no surface to \
+         be seen or touched; a smaller `region` would leave some of it",
+        body.spec.name,
+        at.len()
+    );
+    vec![(&spec.site, words)]
 }
 
 /// The force of a body with levels, and how its steps are divided.
@@ -298,8 +349,7 @@ fn levels_of<'a>(draft: &'a Draft, body: &Placed) -> Option<(&'a LevelsForce, Di
     let name = solid_name(&body.spec.name);
     let force = draft.systems.get(body.system)?.forces.iter().find(|force| force.name() == name)?;
     let force = force.as_any().downcast_ref::<LevelsForce>()?;
-    let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
-    let mut division = Division::new(timestep, halvings as u32);
+    let mut division = Division::new(draft.timestep(system), halvings as u32);
     if stepper.values.text("schedule") == "together" {
         division.pace = Pace::Together;
     }
@@ -307,24 +357,6 @@ fn levels_of<'a>(draft: &'a Draft, body: &Placed) -> Option<(&'a LevelsForce, Di
         division.velocity_jump = stepper.values.number("velocity_jump");
     }
     Some((force, division))
-}
-
-/// Says where cuts go through all cells of a body: from then on it is loose points, which nothing touches.
-pub fn warn_of_cuts(draft: &mut Draft) {
-    let doubt = |body: &Placed| {
-        let spec = body.spec.levels.as_ref()?;
-        let at = cut_at(draft, body);
-        let last = at.iter().copied().reduce(f64::max).filter(|last| last.is_finite())?;
-        Some(format!(
-            "{}: the cuts of body `{}` go through all of its {} cells: from {last} s on its points fall alone, and it has no surface to \
-             be seen or touched; a smaller `region` would leave some of it",
-            draft.place(&spec.site),
-            body.spec.name,
-            at.len()
-        ))
-    };
-    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
-    draft.warnings.extend(doubts);
 }
 
 /// What bodies with levels wear: fields of the world, each with its first state.

@@ -92,6 +92,11 @@ impl Draft<'_> {
         format!("`{}` ({file}:{line}:{column})", site.path)
     }
 
+    /// How long a step of a system is [s].
+    pub fn timestep(&self, system: &SystemSpec) -> f64 {
+        self.spec.world.period / f64::from(system.steps_per_period)
+    }
+
     /// What selects the points and cells of a body.
     pub fn selector<'b>(&'b self, body: &'b Placed<'_>) -> Selector<'b> {
         Selector {
@@ -163,9 +168,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_heat(&mut draft);
     doubts::warn(&mut draft);
     reduced::warn(&mut draft);
-    levels::warn_of_budgets(&mut draft);
-    levels::warn_of_settling(&mut draft);
-    levels::warn_of_cuts(&mut draft);
+    levels::warn(&mut draft);
     imposing::warn(&mut draft);
     doubts::warn_of_detection(&mut draft);
     freedom::check(&mut draft);

@@ -189,7 +189,7 @@ pub fn add_forces(
     system: &SystemSpec,
     forces: &mut Vec<Box<dyn Force>>,
 ) {
-    let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+    let timestep = draft.timestep(system);
     let first = body.rows.start as u32;
     for (index, links) in body.links.iter().enumerate() {
         let table = &network.links[links.table];

@@ -149,7 +149,7 @@ pub fn force(draft: &Draft, body: &Placed) -> Option<Box<dyn Force>> {
 fn check_steps(draft: &Draft, system: &SystemSpec, force: &OctreeForce) {
     let Some(stepper) = &system.stepper else { return };
     let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return };
-    let step = draft.spec.world.period / f64::from(system.steps_per_period);
+    let step = draft.timestep(system);
     let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval());
     if tick > needed {
         let enough = (step / needed).log2().ceil();

@@ -1,4 +1,5 @@
-//! Tools that start where nothing touches them, and hands whose coupling is too stiff for them.
+//! Tools that start where nothing touches them or are of another scale than what they touch, hands whose coupling is too stiff for them, and
+//! devices that are lost after the run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,9 +7,9 @@ use souple_engine::Motion;
 use souple_engine::obstacle::Side;
 use souple_haptics::{Arm, Coupling, TICK};
 use souple_math::Vec3;
-use souple_mesh::CellLocator;
+use souple_mesh::{BoundingBox, CellLocator};
 use souple_models::contact::shape::BuildShape;
-use souple_table::four_digits;
+use souple_table::{four_digits, readable};
 
 use super::Draft;
 use super::bodies::Placed;
@@ -23,6 +24,10 @@ use crate::spec::contact::{Against, Detect};
 const SAMPLES: u32 = 2000;
 /// Parts of the time from a key frame to the next at which it is looked: what is smooth is fastest halfway.
 const BETWEEN_KEYS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+
+/// Lengths of a scene differ by less than this factor, where one touches the other. What is written in millimetres and read in metres is a thousand times
+/// as long; a finger is a tenth of an organ, a needle a hundredth, and neither are a hundred organs thick.
+const OTHER_SCALE: f64 = 100.0;
 
 /// Finds cells of bodies, each by one tree that is built when first asked.
 #[derive(Default)]
@@ -52,24 +57,28 @@ fn doubts(draft: &Draft) -> Vec<String> {
             continue;
         }
         let tool = (shape.shape.as_ref(), shape.motion.as_ref(), &shape.site);
-        warnings.extend(inside(
-            draft,
-            &mut locators,
-            (&contact.body, contact.detect),
-            &format!("shape `{name}`"),
-            tool,
-        ));
+        let what = format!("shape `{name}`");
+        warnings.extend(inside(draft, &mut locators, (&contact.body, contact.detect), &what, tool));
+        warnings.extend(of_other_scale(draft, &contact.body, &what, tool));
     }
     for hand in &draft.spec.hands {
         let tool = (hand.tool.as_ref(), hand.motion.as_ref(), &hand.site);
         let what = format!("the tool of hand `{}`", hand.name);
         warnings.extend(inside(draft, &mut locators, (&hand.touch.body, hand.touch.detect), &what, tool));
+        warnings.extend(of_other_scale(draft, &hand.touch.body, &what, tool));
     }
     for (info, spec) in draft.hands.iter().filter_map(|info| {
         let spec = draft.spec.hands.iter().find(|hand| hand.name == info.name)?;
         Some((info, spec))
     }) {
-        let Some(arm) = info.device.arm().filter(|_| spec.touch.imposed.is_none()) else { continue };
+        let Some(arm) = info.device.arm() else { continue };
+        if let (Some(doubt), Some(chosen)) = (lost_too_late(arm, draft.spec.run.duration), &spec.device) {
+            let place = draft.place(chosen.site_of("lost_at"));
+            warnings.push(format!("{place}: hand `{}`: {doubt}", spec.name));
+        }
+        if spec.touch.imposed.is_some() {
+            continue;
+        }
         let speed = fastest(arm.intent.as_ref(), spec.motion.as_ref(), draft.spec.run.duration);
         let doubts = too_stiff(&info.port.coupling, arm, speed);
         let place = draft.place(&spec.site);
@@ -124,6 +133,62 @@ fn inside<'a>(
     }
 }
 
+/// Of a tool, or of how it is moved, that is so much larger or smaller than what it touches that one of the two is hardly in metres. A container is as large
+/// as it likes.
+fn of_other_scale(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> Vec<String> {
+    let measured = || {
+        let body = draft.body(body).filter(|body| body.spec.network.is_none())?;
+        let outline = built(draft, shape?)?.outline().filter(|outline| outline.bodies == Side::Outside)?;
+        let moved = moves.map_or(Some(0.0), |moves| farthest(draft, moves, site))?;
+        let tool = BoundingBox::of(outline.surface.points.iter().copied());
+        let all_finite = moved.is_finite() && tool.diagonal().is_finite();
+        (all_finite && body.mesh.bounds().diagonal() > 0.0).then_some((body, tool, moved))
+    };
+    let Some((body, tool, moved)) = measured() else { return Vec::new() };
+    let (own, across) = (body.mesh.bounds().diagonal(), tool.diagonal());
+    let Vec3 { x, y, z } = tool.size();
+    let thickness = x.min(y).min(z);
+    let mut doubts = Vec::new();
+    if thickness > OTHER_SCALE * own {
+        doubts.push(format!("is {} m thick", four_digits(thickness)));
+    } else if OTHER_SCALE * across < own {
+        doubts.push(format!("is {} m across", four_digits(across)));
+    }
+    if moved > OTHER_SCALE * own.max(across) {
+        doubts.push(format!("moves by up to {} m", four_digits(moved)));
+    }
+    let (place, name) = (draft.place(site), &body.spec.name);
+    let own = four_digits(own);
+    let said = |doubt: String| {
+        format!(
+            "{place}: {what} {doubt}, and body `{name}`, which it touches, is {own} m across: numbers without a unit are metres (did you mean mm, as \"5 mm\", or \
+             `scale = 0.001` of a file?)"
+        )
+    };
+    doubts.into_iter().map(said).collect()
+}
+
+/// How far a motion goes from where it starts, at most [m]: to its key frames, or in the course of the run; `None` where it was refused.
+fn farthest(draft: &Draft, moves: &MotionSpec, site: &Site) -> Option<f64> {
+    let motion = motion(draft.log, Some(moves), site)??;
+    let start = motion.offset(Vec3::ZERO, 0.0);
+    let dates = match moves {
+        MotionSpec::KeyFrames { times, .. } => times.clone(),
+        MotionSpec::Formula(_) => sampled(draft.spec.run.duration).collect(),
+    };
+    let away = dates.into_iter().map(|time| (motion.offset(Vec3::ZERO, time) - start).length());
+    Some(away.filter(|length| length.is_finite()).fold(0.0, f64::max))
+}
+
+/// Of a device that is lost when the run is over.
+fn lost_too_late(arm: &Arm, duration: f64) -> Option<String> {
+    let (at, lasting) = arm.lost;
+    (lasting > 0.0 && at >= duration).then(|| {
+        let [at, duration] = [at, duration].map(readable);
+        format!("its device is lost at {at} s, and `run.duration` is {duration} s: within that it is not")
+    })
+}
+
 /// What of a coupling is too stiff for the arm that holds its device.
 ///
 /// The device feels its force a tick `T` long, and the tool is led to where the device was: as stiff as may be it is a tick behind,
@@ -159,16 +224,20 @@ fn too_stiff(coupling: &Coupling, arm: &Arm, speed: f64) -> Vec<String> {
 
 /// The greatest speed that is meant in the course of a run [m/s].
 fn fastest(intent: &dyn Motion, written: Option<&MotionSpec>, duration: f64) -> f64 {
-    let sampled = (0..=SAMPLES).map(|sample| duration * f64::from(sample) / f64::from(SAMPLES));
     let keys = match written {
         Some(MotionSpec::KeyFrames { times, .. }) => times.as_slice(),
         _ => &[],
     };
     let between =
         keys.windows(2).flat_map(|ends| BETWEEN_KEYS.map(|part| ends[0] + part * (ends[1] - ends[0])));
-    let times = sampled.chain(between).filter(|time| (0.0..=duration).contains(time));
+    let times = sampled(duration).chain(between).filter(|time| (0.0..=duration).contains(time));
     let speed = |time: f64| intent.velocity(Vec3::ZERO, time).length();
     times.map(speed).filter(|speed| speed.is_finite()).fold(0.0, f64::max)
+}
+
+/// Dates over a run, evenly [s].
+fn sampled(duration: f64) -> impl Iterator<Item = f64> {
+    (0..=SAMPLES).map(move |sample| duration * f64::from(sample) / f64::from(SAMPLES))
 }
 
 #[cfg(test)]

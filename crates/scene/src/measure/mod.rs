@@ -531,7 +531,8 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
     let count = body.levels.as_ref().map_or(0, |levels| levels.coarser.len() + 1);
     let is_there = probe.level.is_none_or(|level| level < count);
     if count == 0 || !is_there {
-        let message = format!("body `{}` has {count} levels", body.spec.name);
+        let message =
+            format!("body `{}` has {}", body.spec.name, souple_table::counted(count as u64, "level"));
         draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`, and one of them");
         return None;
     }

@@ -141,6 +141,7 @@ pub struct CutSpec {
     pub region: Option<Region>,
     /// [s]
     pub time: f64,
+    pub site: Site,
 }
 
 /// A display surface as specified.
@@ -230,7 +231,11 @@ impl LevelsSpec {
             cuts: reader
                 .tables("cuts")
                 .iter()
-                .map(|cut| CutSpec { region: Region::read(cut, "region"), time: cut.number("time") })
+                .map(|cut| CutSpec {
+                    region: Region::read(cut, "region"),
+                    time: cut.number("time"),
+                    site: cut.site(),
+                })
                 .collect(),
             site: reader.site(),
         }
