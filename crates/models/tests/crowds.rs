@@ -40,8 +40,13 @@ fn law(name: &str) -> Box<dyn LinkKernel> {
         };
         values.set(parameter.name, value);
     }
-    (entry.build)(&Making { values: &entry.values(values).unwrap(), timestep: TE, span: Span::Distance })
-        .unwrap()
+    (entry.build)(&Making {
+        values: &entry.values(values).unwrap(),
+        timestep: TE,
+        span: Span::Distance,
+        driven: &[],
+    })
+    .unwrap()
 }
 
 /// Balls in a lump, two of which fly at each other: some meet, some part.

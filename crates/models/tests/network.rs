@@ -360,6 +360,7 @@ fn chain(count: usize, stiffness: f64, start: impl Fn(usize) -> f64) -> World {
         values: &spring.values(values).unwrap(),
         timestep: TE,
         span: Span::Distance,
+        driven: &[],
     })
     .unwrap();
     let mut kinematics = Kinematics::default();
@@ -673,7 +674,7 @@ fn pairs_remember_as_links_do() {
 #[test]
 fn driven_laws_are_laws_made_so() {
     for entry in LINKS.entries {
-        let recipe = Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance, driven: &[] };
+        let recipe = Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance };
         let drivable = recipe.drivable(&*law(entry));
         assert!(!drivable.is_empty(), "{}", entry.name);
         for name in drivable {
@@ -737,7 +738,7 @@ fn driven_laws_are_laws_made_so() {
 fn wrong_numbers_are_faults() {
     let recipe = |name: &str| {
         let entry = LINKS.find(name).unwrap();
-        Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance, driven: &[] }
+        Recipe { entry, values: values(entry), timestep: TE, span: Span::Distance }
     };
     let driven = |name: &str, parameter: &str| {
         let wiring = Wiring { gain: None, parameters: vec![(parameter.to_owned(), 0)] };
@@ -757,7 +758,7 @@ fn wrong_numbers_are_faults() {
         (entry.build)(&Making { values: &values, timestep: TE, span: Span::Distance, driven: &[] }).unwrap();
     assert!(undamped.is_conservative());
     let wiring = Wiring { gain: None, parameters: vec![("damping".to_owned(), 0)] };
-    let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance, driven: &[] };
+    let recipe = Recipe { entry, values, timestep: TE, span: Span::Distance };
     assert!(!DrivenLaw::new(undamped, recipe, &wiring).is_conservative());
 }
 

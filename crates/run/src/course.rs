@@ -10,7 +10,7 @@ use souple_engine::{Command, World};
 use souple_scene::spec::expect::Expect;
 use souple_scene::spec::picture::PictureView;
 use souple_scene::spec::sound::Sound;
-use souple_table::counted;
+use souple_table::{counted, four_digits};
 
 use crate::doubts;
 use crate::expect::Span;
@@ -207,6 +207,13 @@ impl Course {
                  `newton = \"full\"`",
                 counted(session.solver.shortened, "step"),
                 if session.solver.shortened == 1 { "was" } else { "were" },
+            ));
+        }
+        if session.solver.contacts_wedged > 0.0 {
+            session.warnings.push(format!(
+                "contacts that wedge themselves by friction are off by up to {} m, less than a millionth of where they are: their forces were not found closer in \
+                 any step; shorter steps or less friction may help",
+                four_digits(session.solver.contacts_wedged)
             ));
         }
         let mut report = Report {

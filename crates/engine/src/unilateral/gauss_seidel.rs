@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 
 use super::places::{Law, Place};
-use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, PRODUCTS, SWEEPS_AFTER, SWEEPS_BEFORE};
+use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, PRODUCTS, SWEEPS_AFTER, SWEEPS_BEFORE, WEDGED};
 
 /// What a sweep did to forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +129,7 @@ impl ContactSystem {
 
     /// Whether no contact asks for another force, or sweeps do not help any more and what is left may pass.
     pub(super) fn is_solved(&mut self) -> bool {
-        let (mut worst, mut is_solved) = (0.0_f64, true);
+        let (mut worst, mut is_solved, mut is_little) = (0.0_f64, true, true);
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
             let law = Law::Cone(contact.law.friction);
@@ -137,8 +137,16 @@ impl ContactSystem {
             let off = self.length_of(place, by);
             worst = worst.max(off);
             is_solved &= off <= contact.near + CONVERGED * self.scale;
+            is_little &= off <= WEDGED * contact.near;
         }
         self.report.contact_residual = if worst > 0.0 { worst / self.scale.max(worst) } else { 0.0 };
-        is_solved || self.report.contact_iterations >= MOST_SWEEPS && self.report.contact_residual <= LET_PASS
+        if is_solved || self.report.contact_iterations < MOST_SWEEPS {
+            return is_solved;
+        }
+        if self.report.contact_residual <= LET_PASS {
+            return true;
+        }
+        self.report.contacts_wedged = worst;
+        is_little
     }
 }
