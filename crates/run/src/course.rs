@@ -211,8 +211,9 @@ impl Course {
         }
         if session.solver.contacts_wedged > 0.0 {
             session.warnings.push(format!(
-                "contacts that wedge themselves by friction are off by up to {} m, less than a millionth of where they are: their forces were not found closer in \
-                 any step; shorter steps or less friction may help",
+                "contacts contradicted each other or wedged themselves in {}: they were let pass off by up to {} m, less than a millionth of where they are or of \
+                 the longest way of a mass; other steps or less friction may help",
+                counted(session.solver.wedged_steps, "step"),
                 four_digits(session.solver.contacts_wedged)
             ));
         }

@@ -15,7 +15,13 @@ pub struct NaturalFrequencies {
     pub hertz: Vec<f64>,
     /// See [`souple_solve::modes::Modes::residuals`].
     pub largest_residual: f64,
+    /// What is below it, of either sign, is zero to rounding [Hz].
+    pub nothing: f64,
 }
+
+/// Of `ω²` of the highest frequency of a system, what rounding of its matrices leaves of none; and of the one that is looked about, what its inverse does.
+const ROUNDING: f64 = 1e-14;
+const ROUNDING_OF_SHIFT: f64 = 1e-8;
 
 /// Frequencies of a system that cannot be had.
 #[derive(Debug, thiserror::Error)]
@@ -49,8 +55,10 @@ pub fn natural_frequencies(
     let settings = Settings { count, shift: (TAU * near).powi(2), ..Settings::default() };
     let systems = world.model().systems.len();
     let of_system = |index| {
-        let (system, found) = world.with_system(index, |system, state, around, ws| {
-            (system.name.clone(), souple_engine::modes::lowest(system, state, around, ws, &settings))
+        let (system, found, highest) = world.with_system(index, |system, state, around, ws| {
+            let found = souple_engine::modes::lowest(system, state, around, ws, &settings);
+            let forecast = souple_engine::stability::forecast(system, state, around, ws);
+            (system.name.clone(), found, forecast.highest_frequency)
         });
         let modes = match found {
             Ok(modes) => modes,
@@ -60,7 +68,8 @@ pub fn natural_frequencies(
         let mut hertz: Vec<f64> = modes.eigenvalues.iter().map(hertz).collect();
         hertz.sort_by(f64::total_cmp);
         let largest_residual = modes.residuals.iter().copied().fold(0.0, f64::max);
-        Ok(NaturalFrequencies { system, hertz, largest_residual })
+        let nothing = (ROUNDING * highest * highest + ROUNDING_OF_SHIFT * settings.shift).sqrt() / TAU;
+        Ok(NaturalFrequencies { system, hertz, largest_residual, nothing })
     };
     (0..systems).map(of_system).collect()
 }

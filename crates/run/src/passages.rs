@@ -3,8 +3,8 @@
 //! A penalty is a spring: a wall that is thin, or soft, holds no more than the work of pressing it to its middle, and beyond that pushes
 //! out on the other side. A mass that is faster than half of a wall in a step is not held either. It is told once of each contact.
 
-use souple_engine::{Configuration, Force, World};
-use souple_math::Vec3;
+use souple_engine::{Configuration, Force, System, World};
+use souple_math::{Mat3, Vec3};
 use souple_models::contact::ShapeContact;
 use souple_models::contact::passage::{Passage, passage};
 use souple_scene::BodyInfo;
@@ -24,6 +24,8 @@ struct Watched {
     contact: String,
     /// Of its points, in their order, in the place of the shape [m].
     places: Vec<Vec3>,
+    /// Of each, whether all of its ways are prescribed: nothing holds it back.
+    is_led: Vec<bool>,
 }
 
 /// The first way through a wall, of how many of a period.
@@ -50,7 +52,12 @@ impl Passages {
                     contact.points().iter().all(|point| mass_of(bodies, system, point.row).is_some());
                 if is_of_masses {
                     let places = contact.places(at).collect();
-                    watched.push(Watched { system, contact: force.name().to_owned(), places });
+                    let is_led = contact
+                        .points()
+                        .iter()
+                        .map(|point| is_led(&world.model().systems[system], point.row));
+                    let (contact, is_led) = (force.name().to_owned(), is_led.collect());
+                    watched.push(Watched { system, contact, places, is_led });
                 }
             });
         }
@@ -89,8 +96,12 @@ impl Watched {
 
     fn follow_contact(&mut self, contact: &ShapeContact, at: &Configuration, lasted: f64) -> Option<Through> {
         let mut found: Option<Through> = None;
-        for ((point, before), now) in contact.points().iter().zip(&mut self.places).zip(contact.places(at)) {
+        let points = contact.points().iter().zip(&self.is_led);
+        for (((point, is_led), before), now) in points.zip(&mut self.places).zip(contact.places(at)) {
             let from = std::mem::replace(before, now);
+            if *is_led {
+                continue;
+            }
             let Some(passage) = passage(contact.shape(), from, now) else { continue };
             match &mut found {
                 Some(through) => through.count += 1,
@@ -120,26 +131,48 @@ impl Through {
         let Self { passage: Passage { width, .. }, speed, count, stiffness, thickness, .. } = *self;
         // what is left of its motion in the middle, ½ m v², has to be stored before: ½ k p² with all that is pressed in
         let deepest = 0.5 * width + thickness;
-        let enough = stiffness + mass * speed * speed / (deepest * deepest);
+        let own = mass * speed * speed / (deepest * deepest);
+        // what leaps has not felt what there is
+        let leaps = speed * timestep > 0.5 * width;
+        let enough = if leaps { own.max(stiffness) } else { stiffness + own };
         let others = match count {
             1 => String::new(),
             count => format!(" and {} with it", counted(count - 1, "other")),
         };
-        let step = match speed * timestep > 0.5 * width {
-            true => format!(", in steps of less than {} s", four_digits(0.5 * width / speed)),
+        let cure = match leaps {
+            // also as long as the contact itself bears
+            true => format!(
+                "steps of less than {} s",
+                four_digits((0.5 * width / speed).min(2.0 * (mass / enough).sqrt()))
+            ),
             false => String::new(),
+        };
+        let cure = match enough > stiffness {
+            true if leaps => format!(
+                "about {} N/m, where {} are given, in {cure} hold",
+                four_digits(enough),
+                four_digits(stiffness)
+            ),
+            true => {
+                format!("about {} N/m, where {} are given, hold", four_digits(enough), four_digits(stiffness))
+            }
+            false => format!("{cure} hold"),
         };
         format!(
             "went through a wall: by {} s mass {number} of `{body}`{others} was over the middle of what it touches by contact `{contact}`, {} m thick \
-             there, at {} m/s, and is pushed out on the other side; about {} N/m hold it there, {} are given{step}; or a thicker wall, or a plane with a \
-             `sense`, which nothing passes",
+             there, at {} m/s, and is pushed out on the other side; {cure} it there, or a thicker wall, or a plane with a `sense`, which nothing passes",
             four_digits(time),
             four_digits(width),
             four_digits(speed),
-            four_digits(enough),
-            four_digits(stiffness),
         )
     }
+}
+
+/// Whether constraints leave a row no way of its own.
+fn is_led(system: &System, row: u32) -> bool {
+    system.constraints.iter().any(|constraint| {
+        constraint.free == Mat3::ZERO && system.kinematics.row_of_block(constraint.block) == Some(row)
+    })
 }
 
 /// Contacts whose shape is where its contact says, and not what rows bear.

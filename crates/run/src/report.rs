@@ -153,6 +153,7 @@ impl Report {
                 "largest_newton_residual": self.solver.newton_residual,
                 "contact_iterations": self.solver.contact_iterations,
                 "largest_contact_residual": self.solver.contact_residual,
+                "wedged_steps": self.solver.wedged_steps,
                 "contacts_wedged": self.solver.contacts_wedged,
             },
             "probes": probes,

@@ -6,6 +6,7 @@ mod crowds;
 mod cut_open;
 mod cut_touch;
 mod folds;
+mod frequencies;
 mod hands;
 mod kneaded;
 mod levels_resume;

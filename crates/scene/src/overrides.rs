@@ -32,7 +32,7 @@ pub fn within<'a>(path: &str, sources: &'a Sources) -> impl Iterator<Item = &'a 
         set.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
     };
     let is_within = move |text: &&str| {
-        let set = text.split('=').next().unwrap_or_default().trim();
+        let set = path::assignment(text).map_or(*text, |(set, _)| set).trim();
         // an energy is read together with its constants and the names of its parts
         let law = path.strip_suffix(".energy");
         let is_of_law =
@@ -49,7 +49,7 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
         let source = Source { name: NAME.to_owned(), folder: PathBuf::new(), text: text.clone() };
         let source = sources.add(source);
         let whole = Place { source, start: 0, end: text.len() };
-        let Some((path, value)) = text.split_once('=') else {
+        let Some((path, value)) = path::assignment(text) else {
             let site = Site { place: whole, path: String::new() };
             log.add(Code::BadOverride, &site, "this sets nothing", "path=value, such as world.period=5ms");
             continue;

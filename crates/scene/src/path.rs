@@ -27,6 +27,26 @@ pub fn steps(path: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
+/// The path and the value of a text `path = value`; an equals sign within quotes is of a key.
+pub fn assignment(text: &str) -> Option<(&str, &str)> {
+    let mut quote = None;
+    let place = text.char_indices().find(|(_, character)| match (quote, character) {
+        (None, '=') => true,
+        (None, '"' | '\'') => {
+            quote = Some(*character);
+            false
+        }
+        (Some(open), _) => {
+            if open == *character {
+                quote = None;
+            }
+            false
+        }
+        _ => false,
+    });
+    place.map(|(at, sign)| (&text[..at], &text[at + sign.len_utf8()..]))
+}
+
 /// A key at the begin of a path, and what comes after it.
 fn first_key(path: &str) -> Option<(&str, &str)> {
     for quote in ['"', '\''] {
@@ -42,6 +62,17 @@ fn first_key(path: &str) -> Option<(&str, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What is set is told from its value by the first equals sign that is not within quotes.
+    #[test]
+    fn assignments_are_split() {
+        assert_eq!(assignment("a.b=c=d"), Some(("a.b", "c=d")));
+        assert_eq!(assignment("a.\"x=y\".b = 2"), Some(("a.\"x=y\".b ", " 2")));
+        assert_eq!(assignment("a.'\"='=\"2\""), Some(("a.'\"='", "\"2\"")));
+        for none in ["", "a", "\"a=b", "é"] {
+            assert_eq!(assignment(none), None, "{none}");
+        }
+    }
 
     /// Keys, keys in quotes and items of lists are told from each other; what is cut short or lacks a dot is no path.
     #[test]

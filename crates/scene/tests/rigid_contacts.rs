@@ -5,6 +5,42 @@ use souple_models::network::{RigidBalls, SidedConstraints};
 
 use crate::worlds::{assert_goes_on, read, started, stepped};
 
+/// A ball of 0.1 m between two walls, of which one comes nearer.
+const SQUEEZED: &str = r#"
+format = 1
+[world]
+period = "1 ms"
+gravity = [0, 0, 0]
+[systems.main]
+stepper = "t_simulation"
+[networks.n.masses.ball]
+positions = [[0.1, 0, 0]]
+mass = 0.1
+[[networks.n.constraints]]
+name = "left"
+plane = { place = [0.05, 0, 0], normal = [1, 0, 0], motion = { times = [0, 1e-3, 2e-3], offsets = [[0, 0, 0], [2e-8, 0, 0], [1e-5, 0, 0]] } }
+sense = "at_least"
+radius = 0.05
+[[networks.n.constraints]]
+name = "right"
+plane = { place = [0.15, 0, 0], normal = [-1, 0, 0] }
+sense = "at_least"
+radius = 0.05
+"#;
+
+/// Contacts that contradict each other by less than a millionth of where they are, here 1e-7 m, are let pass and told; by more they end the run.
+#[test]
+fn little_contradictions_are_let_pass() {
+    let mut world = started(SQUEEZED, &[]);
+    world.step().unwrap();
+    let report = world.last_report();
+    assert_eq!(report.wedged_steps, 1, "{report:?}");
+    // both walls ask for half of what they are too near at least
+    assert!((1e-8..=2e-8).contains(&report.contacts_wedged), "{report:?}");
+    let refused = world.step().expect_err("walls 0.01 mm too near");
+    assert!(refused.to_string().contains("no forces bring it there"), "{refused}");
+}
+
 /// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
 const FALLING: &str = r#"
 format = 1

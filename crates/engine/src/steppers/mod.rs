@@ -51,7 +51,9 @@ pub struct StepReport {
     pub contact_iterations: u64,
     /// How far such contacts are from signs, gaps and friction as they are to be, of how far they would be without forces.
     pub contact_residual: f64,
-    /// The same of contacts that wedge themselves, which were let pass for it is little beside where they are [m]; 0 where there are none.
+    /// Steps in which contacts that contradict each other, or wedge themselves, were let pass for they were off by little beside where they are,
+    /// and by how much they were [m].
+    pub wedged_steps: u64,
     pub contacts_wedged: f64,
 }
 
@@ -67,6 +69,7 @@ impl StepReport {
         self.newton_residual = self.newton_residual.max(other.newton_residual);
         self.contact_iterations += other.contact_iterations;
         self.contact_residual = self.contact_residual.max(other.contact_residual);
+        self.wedged_steps += other.wedged_steps;
         self.contacts_wedged = self.contacts_wedged.max(other.contacts_wedged);
     }
 }

@@ -146,7 +146,9 @@ impl ContactSystem {
         if self.report.contact_residual <= LET_PASS {
             return true;
         }
-        self.report.contacts_wedged = worst;
+        if is_little {
+            (self.report.wedged_steps, self.report.contacts_wedged) = (1, worst);
+        }
         is_little
     }
 }

@@ -43,8 +43,8 @@ use places::{Entry, Place};
 const CONVERGED: f64 = 1e-7;
 /// Likewise, what is let pass when no sweeps are left; the report of the step tells it.
 const LET_PASS: f64 = 1e-4;
-/// Of how far off contacts may be by rounding, what is let pass then too: a millionth of coordinates. Bodies that wedge themselves by friction move on from step
-/// to step along what Coulomb's law has no one answer for, by ways that nobody sees.
+/// Of how far off contacts may be by rounding, what is let pass then too: a millionth of coordinates, or of the longest
+/// way of the step. Bodies that wedge themselves by friction move on from step to step along what Coulomb's law has no one answer for, by ways that nobody sees.
 const WEDGED: f64 = 1e5;
 /// Of coordinates, or of the longest way in the step: ten times what relations are off by, for the same reason.
 const TOLERANCE: f64 = 1e-11;

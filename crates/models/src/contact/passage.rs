@@ -26,7 +26,9 @@ pub fn passage(shape: &dyn Shape, from: Vec3, to: Vec3) -> Option<Passage> {
     let reach = (to - from).length();
     let end = shape.nearest(to, reach)?;
     let start = shape.nearest(from, reach)?;
-    if start.normal.dot(end.normal) >= 0.0 {
+    // in a hollow crease two sides push towards each other, and what is thrown from one to the other goes over no middle
+    let is_over = start.normal.dot(to - from) < 0.0 && end.normal.dot(to - from) > 0.0;
+    if !is_over || start.normal.dot(end.normal) >= 0.0 {
         return None;
     }
     let (mut near, mut far) = (from, to);
@@ -58,7 +60,9 @@ mod tests {
     use souple_math::Mat3;
 
     use super::*;
-    use crate::contact::shape::{Cuboid, Plane, Sphere};
+    use souple_mesh::TriangleSurface;
+
+    use crate::contact::shape::{ClosedSurface, Cuboid, Plane, Sphere};
 
     fn at(x: f64) -> Vec3 {
         Vec3::new(x, 0.1, -0.2)
@@ -80,6 +84,28 @@ mod tests {
         }
         // past it
         assert_eq!(passage(&wall, Vec3::new(0.8, 0.6, 0.0), Vec3::new(1.2, 0.6, 0.0)), None);
+    }
+
+    /// In a groove a mass that is thrown from one side to the other goes over no middle: the nearest side is another there, and pushes back.
+    #[test]
+    fn grooves_throw_back() {
+        // a block with a groove along y, whose bottom is at z = -0.45, and which reaches down to -1
+        let section = [(0.0, -0.45), (-1.0, 0.5), (-1.0, -1.0), (1.0, -1.0), (1.0, 0.5)];
+        let points = [-1.0, 1.0].into_iter().flat_map(|y| section.map(|(x, z)| Vec3::new(x, y, z))).collect();
+        let sides = (0..5_u32).flat_map(|at| {
+            let next = (at + 1) % 5;
+            [[at, next, next + 5], [at, next + 5, at + 5]]
+        });
+        let caps = (1..4_u32).flat_map(|at| [[0, at + 1, at], [5, at + 5, at + 6]]);
+        let triangles = sides.chain(caps).collect();
+        let surface = TriangleSurface { points, triangles, mesh_points: Vec::new(), cells: Vec::new() };
+        let block = ClosedSurface::new(surface).unwrap();
+        assert!(block.nearest(Vec3::Z * -0.9, 1.0).unwrap().distance < -0.09);
+        let (left, right) = (Vec3::new(-0.1, 0.0, -0.5), Vec3::new(0.1, 0.0, -0.5));
+        let normal = |place: Vec3| block.nearest(place, f64::INFINITY).unwrap().normal;
+        assert!(normal(left).dot(normal(right)) < 0.1, "{:?} {:?}", normal(left), normal(right));
+        assert_eq!(passage(&block, left, right), None);
+        assert_eq!(passage(&block, right, left), None);
     }
 
     /// A ball is as thick as it is across the side that the point came from; what has no other side is not passed.

@@ -289,10 +289,10 @@ fn doubts_of_budget<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> V
 
 /// A run ends before a body has settled, or its first step does not end before.
 fn doubts_of_settling<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
-    let (duration, name) = (draft.spec.run.duration, &body.spec.name);
+    let (duration, name) = (draft.spec.run.written_duration(), &body.spec.name);
     let Some(settled) = spec.criterion.settled else { return Vec::new() };
     let step = draft.spec.systems.get(body.system).map_or(0.0, |system| draft.timestep(system));
-    let words = if settled >= duration {
+    let words = if let Some(duration) = duration.filter(|duration| settled >= *duration) {
         format!(
             "body `{name}` has settled at {} s, and `run.duration` is {} s: within that the finest mesh is at work all the while; an earlier date would let it be \
              coarse",
@@ -314,7 +314,8 @@ fn doubts_of_settling<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) ->
 
 /// A run ends before a cut is made.
 fn doubts_of_late_cuts<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -> Vec<(&'a Site, String)> {
-    let (duration, name) = (draft.spec.run.duration, &body.spec.name);
+    let name = &body.spec.name;
+    let Some(duration) = draft.spec.run.written_duration() else { return Vec::new() };
     let late = spec.cuts.iter().filter(|cut| cut.time >= duration);
     let words = |cut: &CutSpec| {
         format!(

@@ -28,6 +28,8 @@ const BETWEEN_KEYS: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
 /// Lengths of a scene differ by less than this factor, where one touches the other. What is written in millimetres and read in metres is a thousand times
 /// as long; a finger is a tenth of an organ, a needle a hundredth, and neither are a hundred organs thick.
 const OTHER_SCALE: f64 = 100.0;
+/// A body in millimetres is a thousand times as large as what touches it, and the tip of a needle is some hundredths of an organ.
+const MILLI: f64 = 1000.0;
 
 /// Finds cells of bodies, each by one tree that is built when first asked.
 #[derive(Default)]
@@ -59,20 +61,22 @@ fn doubts(draft: &Draft) -> Vec<String> {
         let tool = (shape.shape.as_ref(), shape.motion.as_ref(), &shape.site);
         let what = format!("shape `{name}`");
         warnings.extend(inside(draft, &mut locators, (&contact.body, contact.detect), &what, tool));
-        warnings.extend(of_other_scale(draft, &contact.body, &what, tool));
+        warnings.extend(of_other_scale(draft, &contact.body, (&what, false), tool));
     }
     for hand in &draft.spec.hands {
         let tool = (hand.tool.as_ref(), hand.motion.as_ref(), &hand.site);
         let what = format!("the tool of hand `{}`", hand.name);
         warnings.extend(inside(draft, &mut locators, (&hand.touch.body, hand.touch.detect), &what, tool));
-        warnings.extend(of_other_scale(draft, &hand.touch.body, &what, tool));
+        warnings.extend(of_other_scale(draft, &hand.touch.body, (&what, true), tool));
     }
     for (info, spec) in draft.hands.iter().filter_map(|info| {
         let spec = draft.spec.hands.iter().find(|hand| hand.name == info.name)?;
         Some((info, spec))
     }) {
         let Some(arm) = info.device.arm() else { continue };
-        if let (Some(doubt), Some(chosen)) = (lost_too_late(arm, draft.spec.run.duration), &spec.device) {
+        if let (Some(doubt), Some(chosen)) =
+            (lost_too_late(arm, draft.spec.run.written_duration()), &spec.device)
+        {
             let place = draft.place(chosen.site_of("lost_at"));
             warnings.push(format!("{place}: hand `{}`: {doubt}", spec.name));
         }
@@ -135,7 +139,12 @@ fn inside<'a>(
 
 /// Of a tool, or of how it is moved, that is so much larger or smaller than what it touches that one of the two is hardly in metres. A container is as large
 /// as it likes.
-fn of_other_scale(draft: &Draft, body: &str, what: &str, (shape, moves, site): Tool) -> Vec<String> {
+fn of_other_scale(
+    draft: &Draft,
+    body: &str,
+    (what, is_held): (&str, bool),
+    (shape, moves, site): Tool,
+) -> Vec<String> {
     let measured = || {
         let body = draft.body(body).filter(|body| body.spec.network.is_none())?;
         let outline = built(draft, shape?)?.outline().filter(|outline| outline.bodies == Side::Outside)?;
@@ -149,9 +158,10 @@ fn of_other_scale(draft: &Draft, body: &str, what: &str, (shape, moves, site): T
     let Vec3 { x, y, z } = tool.size();
     let thickness = x.min(y).min(z);
     let mut doubts = Vec::new();
-    if thickness > OTHER_SCALE * own {
+    // what stands still is ground
+    if thickness > OTHER_SCALE * own && (moves.is_some() || is_held) {
         doubts.push(format!("is {} m thick", four_digits(thickness)));
-    } else if OTHER_SCALE * across < own {
+    } else if MILLI * across < own {
         doubts.push(format!("is {} m across", four_digits(across)));
     }
     if moved > OTHER_SCALE * own.max(across) {
@@ -181,8 +191,8 @@ fn farthest(draft: &Draft, moves: &MotionSpec, site: &Site) -> Option<f64> {
 }
 
 /// Of a device that is lost when the run is over.
-fn lost_too_late(arm: &Arm, duration: f64) -> Option<String> {
-    let (at, lasting) = arm.lost;
+fn lost_too_late(arm: &Arm, duration: Option<f64>) -> Option<String> {
+    let ((at, lasting), duration) = (arm.lost, duration?);
     (lasting > 0.0 && at >= duration).then(|| {
         let [at, duration] = [at, duration].map(readable);
         format!("its device is lost at {at} s, and `run.duration` is {duration} s: within that it is not")

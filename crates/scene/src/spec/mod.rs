@@ -304,6 +304,10 @@ impl Spec {
         let kept: Vec<String> =
             self.networks().flat_map(|(body, it)| it.names_of_constraints(body)).collect();
         let kept: Vec<&str> = kept.iter().map(String::as_str).collect();
+        let is_of_other = |body: &str, constraint: &String| {
+            let own = constraint.strip_prefix(body).is_some_and(|rest| rest.starts_with('.'));
+            kept.contains(&constraint.as_str()) && !own
+        };
         for probe in &self.probes {
             if let Some(name) = &probe.contact {
                 if kept.contains(&name.as_str()) {
@@ -319,6 +323,16 @@ impl Spec {
                     let message = format!("`{name}` pushes from one side alone, and is a contact");
                     let expected = "`contact_force` with `contact`";
                     log.add(Code::UnknownName, &probe.site, message, expected);
+                } else if let Some(body) = probe.body.as_ref().filter(|body| is_of_other(body, name)) {
+                    let message = format!(
+                        "constraint `{name}` is of another network than `{body}`, whose masses it does nothing to"
+                    );
+                    log.add(
+                        Code::Conflict,
+                        &probe.site,
+                        message,
+                        "the network of the constraint, or no `body`",
+                    );
                 } else {
                     check("constraint", name, &kept, &probe.site);
                 }

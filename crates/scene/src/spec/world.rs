@@ -152,6 +152,13 @@ pub struct RunSpec {
     pub monitor: Option<MonitorSpec>,
 }
 
+impl RunSpec {
+    /// Of the scene, where it tells one: the command line may take another [s].
+    pub fn written_duration(&self) -> Option<f64> {
+        self.has_duration.then_some(self.duration)
+    }
+}
+
 /// What of a run's energy is watched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorSpec {

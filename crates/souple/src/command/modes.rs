@@ -58,19 +58,15 @@ pub fn modes(arguments: &Arguments) -> Result<End, Refusal> {
     for found in &systems {
         print_line(format_args!("system {}", found.system));
         for (number, hertz) in found.hertz.iter().enumerate() {
-            print_line(format_args!("  {:>3}  {hertz} Hz{}", number + 1, what_holds(*hertz, &found.hertz)));
+            print_line(format_args!("  {:>3}  {hertz} Hz{}", number + 1, what_holds(*hertz, found.nothing)));
         }
     }
     Ok(End::Done)
 }
 
-/// Of the greatest frequency, one below which nothing is told from nothing: rounding of the matrices under a root.
-const NOTHING: f64 = 1e-7;
-
 /// What is said of directions in which no stiffness holds.
-fn what_holds(hertz: f64, all: &[f64]) -> &'static str {
-    let greatest = all.iter().fold(0.0_f64, |most, hertz| most.max(hertz.abs()));
-    if hertz.abs() <= NOTHING * greatest {
+fn what_holds(hertz: f64, nothing: f64) -> &'static str {
+    if hertz.abs() <= nothing {
         ": no stiffness, nothing holds it there"
     } else if hertz < 0.0 {
         ": negative stiffness, it moves away, as what is pressed does across"

@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
     if arguments.steps == Some(0) {
-        print_note("`--steps 0`: nothing is stepped, and results are those of the start");
+        print_note("`--steps 0`: nothing is stepped, and results are those of where it begins");
     }
     let mut options = Options {
         steps: arguments.steps,
