@@ -41,6 +41,36 @@ fn little_contradictions_are_let_pass() {
     assert!(refused.to_string().contains("no forces bring it there"), "{refused}");
 }
 
+/// A ball on a slope against which a wall comes, with so much friction that it cannot slide up: what presses it grows beyond all bounds, and the run ends
+/// before the ball is thrown anywhere. With less friction it is lifted.
+#[test]
+fn what_locks_itself_ends_the_run() {
+    let wedge = |friction: f64| {
+        format!(
+            "format = 1\n[world]\nperiod = \"2 ms\"\ngravity = [0, 0, -9.81]\n[systems.main]\nstepper = \"t_simulation\"\n\
+             [networks.n.masses.ball]\npositions = [[0, 0, 0.04]]\nmass = 0.1\n\
+             [[networks.n.constraints]]\nname = \"slope\"\nplane = {{ place = [0, 0, 0], normal = [-0.55, 0, 1] }}\nsense = \"at_least\"\nradius = 0.03\nfriction = {friction}\n\
+             [[networks.n.constraints]]\nname = \"wall\"\nplane = {{ place = [-0.05, 0, 0], normal = [1, 0, 0], motion = {{ times = [0, 0.5, 1.5], offsets = [[0, 0, 0], [0, 0, 0], [0.05, 0, 0]] }} }}\nsense = \"at_least\"\nradius = 0.03\nfriction = {friction}\n"
+        )
+    };
+    for friction in [0.65, 0.75, 0.9] {
+        let mut world = started(&wedge(friction), &[]);
+        let refused = (0..750).find_map(|_| {
+            let height = world.state().systems[0].q[0].z;
+            assert!(height < 0.1, "{friction}: {height}");
+            world.step().err()
+        });
+        let refused =
+            refused.unwrap_or_else(|| panic!("{friction}: {:?}", world.state().systems[0].q)).to_string();
+        assert!(
+            refused.contains("lock themselves") || refused.contains("no forces bring it there"),
+            "{refused}"
+        );
+    }
+    let lifted = stepped(started(&wedge(0.3), &[]), 750).state().systems[0].q[0];
+    assert!(lifted.z > 0.04 && lifted.z < 0.1, "{lifted:?}");
+}
+
 /// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
 const FALLING: &str = r#"
 format = 1

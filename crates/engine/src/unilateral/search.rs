@@ -7,8 +7,8 @@ use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 
 use super::{
-    Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE, fault,
-    pairs_in,
+    CONVERGED, Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE,
+    fault, pairs_in,
 };
 
 impl ContactSystem {
@@ -117,7 +117,7 @@ impl ContactSystem {
             self.fill(moving)?;
         }
         if !is_more && self.is_solved() {
-            return Ok(false);
+            return self.check_forces(moving, state).map(|()| false);
         }
         if self.rounds == MOST_ROUNDS || self.report.contact_iterations >= MOST_SWEEPS {
             return Err(self.unsolved(moving.step, state));
@@ -132,6 +132,23 @@ impl ContactSystem {
         self.solve(is_first);
         self.push(moving, places);
         Ok(true)
+    }
+
+    /// Refuses forces of which rounding alone moves points farther than contacts are to be found to.
+    fn check_forces(&self, moving: &Moving, state: &SystemState) -> Result<(), StepError> {
+        for (place, contact) in self.sought.iter().enumerate() {
+            let contact = &self.contacts[*contact as usize];
+            let unknown = f64::EPSILON * self.length_of(place, contact.force);
+            if unknown > contact.near + CONVERGED * self.scale {
+                let force = contact.force.length();
+                let what = format!(
+                    "is pressed with {force:.1e} N, beside which no number holds what moves it: bodies lock themselves between surfaces that friction does not let them \
+                     leave; take less friction, or less restitution"
+                );
+                return Err(fault(moving, state, contact.of, &what));
+            }
+        }
+        Ok(())
     }
 
     /// Finds what the last improvement was to find together with multipliers between bounds, from where it began, and changes where the step leads by what

@@ -294,7 +294,7 @@ fn doubts_of_settling<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) ->
     let step = draft.spec.systems.get(body.system).map_or(0.0, |system| draft.timestep(system));
     let words = if let Some(duration) = duration.filter(|duration| settled >= *duration) {
         format!(
-            "body `{name}` has settled at {} s, and `run.duration` is {} s: within that the finest mesh is at work all the while; an earlier date would let it be \
+            "body `{name}` has settled at {} s, and not before the `run.duration` of {} s is over: until then the finest mesh is at work; an earlier date would let it be \
              coarse",
             readable(settled),
             readable(duration)
@@ -319,7 +319,7 @@ fn doubts_of_late_cuts<'a>(draft: &Draft, body: &Placed, spec: &'a LevelsSpec) -
     let late = spec.cuts.iter().filter(|cut| cut.time >= duration);
     let words = |cut: &CutSpec| {
         format!(
-            "a cut of body `{name}` is made at {} s, and `run.duration` is {} s: within that it is not",
+            "a cut of body `{name}` is made at {} s, after the `run.duration` of {} s: only a longer run comes to it",
             readable(cut.time),
             readable(duration)
         )

@@ -195,7 +195,7 @@ fn lost_too_late(arm: &Arm, duration: Option<f64>) -> Option<String> {
     let ((at, lasting), duration) = (arm.lost, duration?);
     (lasting > 0.0 && at >= duration).then(|| {
         let [at, duration] = [at, duration].map(readable);
-        format!("its device is lost at {at} s, and `run.duration` is {duration} s: within that it is not")
+        format!("its device is lost at {at} s, after the `run.duration` of {duration} s: only a longer run comes to it")
     })
 }
 
