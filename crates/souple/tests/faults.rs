@@ -576,10 +576,24 @@ fn damaged_recordings_do_not_panic() {
 fn overflow_is_refused() {
     let folder = Folder::new("overflow");
     folder.write("cube.toml", CUBE);
+    // a duration that is written says how long periods may be
+    let without = "run.duration=";
     for setting in
         ["world.gravity=[0, -1e308, 0]", "bodies.cube.velocity=[1e308, 0, 0]", "world.period=1e160"]
     {
-        let run = ["run", "cube.toml", "--json", "--out", "out", "--steps", "5", "--set", setting];
+        let run = [
+            "run",
+            "cube.toml",
+            "--json",
+            "--out",
+            "out",
+            "--steps",
+            "5",
+            "--set",
+            without,
+            "--set",
+            setting,
+        ];
         let answer = souple_in(folder.path(), run).ends(1);
         assert!(answer.stderr.contains("system `main`"), "{setting}: {answer:#?}");
         let document = answer.json();
@@ -593,6 +607,7 @@ fn overflow_is_refused() {
         ("bodies.cube.translate=[1e300, 0, 0]", "lost in the rounding"),
         ("bodies.cube.material.youngs_modulus=1e305", "is the unit right?"),
         ("bodies.cube.material.density=1e305", "is the unit right?"),
+        ("world.period=1e160", "at most twice the `duration`"),
     ] {
         let answer = souple_in(folder.path(), ["run", "cube.toml", "--set", setting]).ends(2);
         assert!(answer.stderr.contains(words), "{setting}: {answer:#?}");
