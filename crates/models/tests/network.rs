@@ -571,13 +571,14 @@ fn texts_of_laws_are_checked() {
         network("spring(1 kN/m) - (damper(10 N s/m) | slider(5 N))", &[]),
         network("spring(k) - damper(2 * z)", &[("k", "1 kN/m"), ("z", "3")]),
         states("CHK, 50 N/mm; CHZ, 3 N s/m; SUP, L, 5 mm -> b; INF, dV, 1 m/s -> b"),
-        formula(&[("k", "5 kg")]),
+        formula(&[("k", "5 N/m")]),
     ] {
         assert_eq!(taken, Ok(()));
     }
     let a = [("a", "0")];
     for (result, words) in [
         (network("spring(10 kg)", &[]), "`10 kg` is a mass"),
+        (formula(&[("k", "5 kg")]), "`k` is a mass"),
         (network("spring(1) - damper(3 N/m)", &[]), "`3 N/m` is"),
         (network("slider(2 Pa) - spring(1)", &[]), "`2 Pa` is a pressure"),
         (network("spring(k)", &[("k", "2 m")]), "`2 m` is a length"),
