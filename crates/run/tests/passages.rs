@@ -74,7 +74,7 @@ fn leaps_over_walls_are_told() {
         soft.contains("about 3750 N/m, where 1000 are given, in steps of less than 0.02 s hold it there"),
         "{soft}"
     );
-    let led = "networks.c.pins=[{ region = \"all\", motion = { times = [0, 1], offsets = [[0, 0, 0], [2.5, 0, 0]] } }]";
+    let led = "networks.c.pins=[{ region = \"m\", motion = { times = [0, 1], offsets = [[0, 0, 0], [2.5, 0, 0]] } }]";
     assert_eq!(told(&[led]), "");
 }
 

@@ -35,8 +35,8 @@ fn little_contradictions_are_let_pass() {
     world.step().unwrap();
     let report = world.last_report();
     assert_eq!(report.wedged_steps, 1, "{report:?}");
-    // both walls ask for half of what they are too near at least
-    assert!((1e-8..=2e-8).contains(&report.contacts_wedged), "{report:?}");
+    // one of the walls asks for half of what they are too near at least, and none for more, to rounding of coordinates
+    assert!((1e-8..=2e-8 + 1e-16).contains(&report.contacts_wedged), "{report:?}");
     let refused = world.step().expect_err("walls 0.01 mm too near");
     assert!(refused.to_string().contains("no forces bring it there"), "{refused}");
 }

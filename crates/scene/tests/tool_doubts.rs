@@ -171,19 +171,24 @@ fn intervals_are_forecast_as_they_are_refused() {
 /// Dates that come after a run, or before its first step is over.
 #[test]
 fn dates_without_effect_are_told() {
-    let levels = |keys: &str| LAYERED.replace("budget = 1e9", keys);
+    // only a duration that is written is one to end before
+    let run = "\n[run]\nduration = 1\n";
+    let levels = |keys: &str| LAYERED.replace("budget = 1e9", keys) + run;
     let cut = |time: f64| {
         levels(&format!("cuts = [{{ region = {{ box = [[0.4, -1, -1], [0.5, 0.05, 1]] }}, time = {time} }}]"))
     };
     assert_eq!(warnings(&cut(0.5)), Vec::<String>::new());
-    assert_says_alone(&cut(1.5), "a cut of body `bar` is made at 1.5 s, and `run.duration` is 1 s");
+    assert_says_alone(&cut(1.5), "a cut of body `bar` is made at 1.5 s, after the `run.duration` of 1 s");
     assert_eq!(warnings(&levels("settled = 0.5")), Vec::<String>::new());
     assert_says_alone(&levels("settled = 0.001"), "settled at 0.001 s, and its first step ends at 0.01 s");
-    assert_says_alone(&levels("settled = 1.5"), "has settled at 1.5 s, and `run.duration` is 1 s");
-    let lost = |keys: &str| HELD.replace("mass = \"0.4 kg\"", &format!("mass = \"0.4 kg\", {keys}"));
+    assert_says_alone(
+        &levels("settled = 1.5"),
+        "has settled at 1.5 s, and not before the `run.duration` of 1 s",
+    );
+    let lost = |keys: &str| HELD.replace("mass = \"0.4 kg\"", &format!("mass = \"0.4 kg\", {keys}")) + run;
     assert_eq!(warnings(&lost("lost_at = 0.5")), Vec::<String>::new());
     for too_late in ["lost_at = 2", "lost_at = 2, lost_for = 0.1"] {
-        assert_says_alone(&lost(too_late), "is lost at 2 s, and `run.duration` is 1 s");
+        assert_says_alone(&lost(too_late), "is lost at 2 s, after the `run.duration` of 1 s");
     }
 }
 
@@ -201,7 +206,7 @@ fn tools_of_another_scale_are_told() {
     }
     assert_says_alone(&of("[0.5, 100, 0.05]", 90.0), "the tool of hand `right` is 180 m thick");
     assert_says_alone(
-        &of("[0.5, 0.11, 0.05]", 0.002),
+        &of("[0.5, 0.11, 0.05]", 0.0002),
         "m across, and body `bar`, which it touches, is 1.01 m across",
     );
     let led = HELD.replace("[0, -0.02, 0]]", "[0, -200, 0]]").replace("times = [0, 0.1]", "times = [0, 100]");
