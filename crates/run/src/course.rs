@@ -211,8 +211,8 @@ impl Course {
         }
         if session.solver.contacts_wedged > 0.0 {
             session.warnings.push(format!(
-                "contacts contradicted each other or wedged themselves in {}: they were let pass off by up to {} m, less than a millionth of where they are or of \
-                 the longest way of a mass; other steps or less friction may help",
+                "bodies were jammed by friction, or contradicted by several contacts, in {}: of these collisions gave nothing back, and contacts were let pass off by up to \
+                 {} m; less friction, less restitution or other steps may help",
                 counted(session.solver.wedged_steps, "step"),
                 four_digits(session.solver.contacts_wedged)
             ));

@@ -179,6 +179,12 @@ fn wrong_controls_are_refused() {
         &with("links = \"band\"\nparameter = \"mass\"\nvalue = \"1\""),
         &["no `mass` that can be driven", "one of stiffness"],
     );
+    // without the control its condition would never hold, which is not what is wrong
+    let switched = pulled(
+        "{ name = \"finite_state\", states = { on = \"-k*(D-L0)\", off = \"0\" }, transitions = { \"on -> off\" = \"s > 0.5\" }, parameters = { k = \"100 N/m\", s = 0 } }",
+        "[networks.n.controls.c]\nlinks = \"band\"\nparameter = \"ss\"\nvalue = \"1\"\n",
+    );
+    refused(&switched, &["no `ss` that can be driven", "k, s"]);
     refused(&with("connects = \"t < 1\""), &["does not say what it drives", "links, crowds or actuator"]);
     refused(&with("crowds = \"band\"\nconnects = \"t < 1\""), &["no crowds `band`"]);
     let bent = pulled(

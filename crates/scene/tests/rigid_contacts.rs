@@ -71,6 +71,38 @@ fn what_locks_itself_ends_the_run() {
     assert!(lifted.z > 0.04 && lifted.z < 0.1, "{lifted:?}");
 }
 
+/// Two balls side by side that fall between walls which friction lets nothing slide up: their collisions have no forces by the law, and give nothing back then.
+/// The balls come to rest where they are, pressed as much as their weight asks for, not beyond all bounds, and go on resting.
+#[test]
+fn jammed_balls_come_to_rest() {
+    let wall = |name: &str, x: f64, friction: f64| {
+        format!(
+            "[[networks.n.constraints]]\nname = \"{name}\"\nplane = {{ place = [0, 0, 0], normal = [{x}, 0, 1] }}\nsense = \"at_least\"\nradius = 0.03\nfriction = {friction}\nrestitution = 0.3\n"
+        )
+    };
+    for friction in [0.5, 0.9] {
+        let scene = format!(
+            "format = 1\n[world]\nperiod = \"2 ms\"\ngravity = [0, 0, -9.81]\n[systems.main]\nstepper = \"t_simulation\"\n\
+             [networks.n.masses.b]\npositions = [[-0.035, 0, 0.2], [0.035, 0, 0.2]]\nmass = 0.1\n\
+             [[networks.n.constraints]]\nname = \"balls\"\nballs = {{ diameter = 0.06 }}\nfriction = {friction}\n{}{}",
+            wall("left", 2.0, friction),
+            wall("right", -2.0, friction)
+        );
+        let mut world = started(&scene, &[]);
+        let mut jammed = 0;
+        for _ in 0..300 {
+            world.step().unwrap();
+            jammed += world.last_report().wedged_steps;
+        }
+        assert!(jammed > 0);
+        let state = &world.state().systems[0];
+        for (x, v) in state.q.iter().zip(&state.v) {
+            // they hang where they came to touch both their wall and each other, and leave it by what jams are let pass
+            assert!((x.x.abs() - 0.03).abs() < 1e-6 * 0.2 && v.length() < 1e-3, "{friction}: {x:?}, {v:?}");
+        }
+    }
+}
+
 /// Twelve balls that fall onto a floor, into each other, beside a rigid triangle.
 const FALLING: &str = r#"
 format = 1

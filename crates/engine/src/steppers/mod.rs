@@ -51,8 +51,7 @@ pub struct StepReport {
     pub contact_iterations: u64,
     /// How far such contacts are from signs, gaps and friction as they are to be, of how far they would be without forces.
     pub contact_residual: f64,
-    /// Steps in which contacts that contradict each other, or wedge themselves, were let pass for they were off by little beside where they are,
-    /// and by how much they were [m].
+    /// Steps in which bodies were jammed: contacts that have no forces by the law were asked less, and by how much [m].
     pub wedged_steps: u64,
     pub contacts_wedged: f64,
 }
@@ -144,7 +143,7 @@ pub enum StepError {
     )]
     PairsUnsettled { searches: u32 },
     #[error(
-        "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: it is held elsewhere, contradicted by others, or turns too far in one step: take a smaller one"
+        "`{force}`: {relation} is {off:.3e} from what it is to be where the step ends (time {time} s), and no forces bring it there: it is held elsewhere, contradicted by others, locked by friction, or turns too far in one step: take a smaller one"
     )]
     Unkept { force: String, relation: String, off: f64, row: usize, time: f64 },
     #[error(

@@ -5,7 +5,7 @@ use souple_math::{Mat3, Vec3};
 use crate::state::{SystemState, pairs_of};
 use crate::steppers::{Step, StepError, StepReport};
 
-use super::places::{Entry, Law, Place};
+use super::places::{Entry, Place};
 use super::{Contact, ContactSystem, Moving, described};
 
 impl ContactSystem {
@@ -39,9 +39,7 @@ impl ContactSystem {
         let mut worst = (0.0, (0, 0), 0);
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
-            let law = Law::Cone(contact.law.friction);
-            let by = self.wanted_change(place, contact.force, self.off[place], law);
-            let off = self.length_of(place, by);
+            let off = self.off_at(place).max(self.asked_less(place));
             if off >= worst.0 {
                 worst = (off, contact.of, contact.sides.rows[0] as usize);
             }

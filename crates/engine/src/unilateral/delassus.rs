@@ -92,6 +92,7 @@ impl ContactSystem {
             let tangent = 0.5 * (a + c) + (0.5 * (a - c)).hypot(b);
             self.stiffest.push([own.entry(0, 0), tangent]);
         }
+        self.soften();
         Ok(())
     }
 

@@ -23,7 +23,7 @@ impl ContactSystem {
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
             self.places[place].force = contact.force;
-            if is_first {
+            if is_first && !contact.is_jammed {
                 self.change[place] = contact.force_before;
             }
         }
@@ -127,28 +127,43 @@ impl ContactSystem {
         (change.x.abs() * normal).max(change.y.hypot(change.z) * tangent)
     }
 
+    /// How far off a contact is where the step leads, as the force tells that it would have [m].
+    pub(super) fn off_at(&self, place: usize) -> f64 {
+        let contact = &self.contacts[self.sought[place] as usize];
+        let law = Law::Cone(contact.law.friction);
+        let by = self.wanted_change(place, contact.force, self.off[place], law);
+        self.length_of(place, by)
+    }
+
+    /// How far off it may be [m].
+    pub(super) fn may_be_off(&self, place: usize) -> f64 {
+        self.contacts[self.sought[place] as usize].near + CONVERGED * self.scale
+    }
+
     /// Whether no contact asks for another force, or sweeps do not help any more and what is left may pass.
     pub(super) fn is_solved(&mut self) -> bool {
         let (mut worst, mut is_solved, mut is_little) = (0.0_f64, true, true);
-        for (place, contact) in self.sought.iter().enumerate() {
-            let contact = &self.contacts[*contact as usize];
-            let law = Law::Cone(contact.law.friction);
-            let by = self.wanted_change(place, contact.force, self.off[place], law);
-            let off = self.length_of(place, by);
-            worst = worst.max(off);
-            is_solved &= off <= contact.near + CONVERGED * self.scale;
-            is_little &= off <= WEDGED * contact.near;
+        for place in 0..self.sought.len() {
+            let off = self.off_at(place);
+            let in_all = off.max(self.asked_less(place));
+            worst = worst.max(in_all);
+            is_solved &= off <= self.may_be_off(place);
+            is_little &= in_all <= WEDGED * self.contacts[self.sought[place] as usize].near;
         }
         self.report.contact_residual = if worst > 0.0 { worst / self.scale.max(worst) } else { 0.0 };
-        if is_solved || self.report.contact_iterations < MOST_SWEEPS {
-            return is_solved;
+        if !is_solved && self.sweeps() < MOST_SWEEPS {
+            return false;
         }
-        if self.report.contact_residual <= LET_PASS {
-            return true;
+        let may_pass = self.report.contact_residual <= LET_PASS;
+        if !self.is_jammed {
+            return is_solved || may_pass;
         }
-        if is_little {
-            (self.report.wedged_steps, self.report.contacts_wedged) = (1, worst);
-        }
-        is_little
+        (self.report.wedged_steps, self.report.contacts_wedged) = (1, worst);
+        may_pass || is_little
+    }
+
+    /// Sweeps, and products in their place, since forces were begun to be sought.
+    pub(super) fn sweeps(&self) -> u64 {
+        self.report.contact_iterations - self.spent
     }
 }

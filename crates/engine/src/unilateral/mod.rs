@@ -24,6 +24,7 @@ mod commit;
 mod delassus;
 mod face;
 mod gauss_seidel;
+mod jammed;
 mod places;
 mod search;
 
@@ -43,14 +44,14 @@ use places::{Entry, Place};
 const CONVERGED: f64 = 1e-7;
 /// Likewise, what is let pass when no sweeps are left; the report of the step tells it.
 const LET_PASS: f64 = 1e-4;
-/// Of how far off contacts may be by rounding, what is let pass then too: a millionth of coordinates, or of the longest
-/// way of the step. Bodies that wedge themselves by friction move on from step to step along what Coulomb's law has no one answer for, by ways that nobody sees.
+/// Of how far off contacts may be by rounding, what is let pass of jammed bodies too: a millionth of coordinates, or of the longest
+/// way of the step. Bodies that are jammed move from step to step along what Coulomb's law has no one answer for, by ways that nobody sees.
 const WEDGED: f64 = 1e5;
 /// Of coordinates, or of the longest way in the step: ten times what relations are off by, for the same reason.
 const TOLERANCE: f64 = 1e-11;
 /// Of coordinates of a body, what its relations are off by.
 const OF_RELATIONS: f64 = 1e-12;
-/// Sweeps over all contacts of a step, and products in the place of sweeps.
+/// Sweeps over all contacts of a step, and products in the place of sweeps; as many again where bodies are jammed.
 const MOST_SWEEPS: u64 = 20_000;
 /// Sweeps after which forces are sought on the face that they have found, products with `D` of that search, more where there are more contacts, and sweeps after it. These are a round, after
 /// which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
@@ -202,6 +203,8 @@ struct Contact {
     narrowing: f64,
     /// The gap at the end, likewise [m].
     wanted: f64,
+    /// Whether it is asked less than the law ([`jammed`]).
+    is_jammed: bool,
     /// How far what points are against moves in the step [m].
     carried: Vec3,
     /// [N]
@@ -252,6 +255,9 @@ pub(crate) struct ContactSystem {
     has_bounded: bool,
     /// Whether it is known in this step which collide.
     are_decided: bool,
+    /// Whether there are contacts that are asked less, and how many sweeps were spent when they were begun to be.
+    is_jammed: bool,
+    spent: u64,
     report: StepReport,
 }
 

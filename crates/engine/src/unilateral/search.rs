@@ -7,8 +7,8 @@ use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 
 use super::{
-    CONVERGED, Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE,
-    fault, pairs_in,
+    Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE, fault,
+    pairs_in,
 };
 
 impl ContactSystem {
@@ -25,6 +25,7 @@ impl ContactSystem {
         self.sought.clear();
         (self.rounds, self.report) = (0, StepReport::default());
         (self.are_decided, self.has_bounded, self.tightness) = (false, false, 1.0);
+        (self.is_jammed, self.spent) = (false, 0);
         let earlier = (start - timestep).max(0.0);
         for (index, force) in system.forces.iter().enumerate() {
             let Some(unilateral) = force.unilateral() else { continue };
@@ -61,6 +62,7 @@ impl ContactSystem {
                     gap: value / steepness,
                     narrowing: (value - before) / steepness,
                     wanted: 0.0,
+                    is_jammed: false,
                     carried: unilateral.surface_velocity(number, start + timestep) * timestep,
                     force: Vec3::ZERO,
                     force_before: frame * stored,
@@ -116,39 +118,36 @@ impl ContactSystem {
         if is_other || moving.solved == Solved::WithOthers {
             self.fill(moving)?;
         }
+        self.give_way();
         if !is_more && self.is_solved() {
-            return self.check_forces(moving, state).map(|()| false);
+            return Ok(false);
         }
-        if self.rounds == MOST_ROUNDS || self.report.contact_iterations >= MOST_SWEEPS {
-            return Err(self.unsolved(moving.step, state));
+        if self.rounds == MOST_ROUNDS || self.sweeps() >= MOST_SWEEPS {
+            let is_off = |place: &usize| self.off_at(*place) > self.may_be_off(*place);
+            let off = (0..self.sought.len()).filter(is_off).collect();
+            return match self.begin_jammed(moving, places, off) {
+                true => Ok(true),
+                false => Err(self.unsolved(moving.step, state)),
+            };
         }
         self.rounds += 1;
-        if is_first {
+        if is_first && !self.is_jammed {
             self.scale = self
                 .off
                 .iter()
                 .fold(0.0, |most, off| off.to_array().map(f64::abs).into_iter().fold(most, f64::max));
         }
         self.solve(is_first);
+        let beyond = self.beyond_numbers();
+        if !beyond.is_empty() {
+            let worst = beyond[0];
+            return match self.begin_jammed(moving, places, beyond) {
+                true => Ok(true),
+                false => Err(self.too_hard(moving, state, worst)),
+            };
+        }
         self.push(moving, places);
         Ok(true)
-    }
-
-    /// Refuses forces of which rounding alone moves points farther than contacts are to be found to.
-    fn check_forces(&self, moving: &Moving, state: &SystemState) -> Result<(), StepError> {
-        for (place, contact) in self.sought.iter().enumerate() {
-            let contact = &self.contacts[*contact as usize];
-            let unknown = f64::EPSILON * self.length_of(place, contact.force);
-            if unknown > contact.near + CONVERGED * self.scale {
-                let force = contact.force.length();
-                let what = format!(
-                    "is pressed with {force:.1e} N, beside which no number holds what moves it: bodies lock themselves between surfaces that friction does not let them \
-                     leave; take less friction, or less restitution"
-                );
-                return Err(fault(moving, state, contact.of, &what));
-            }
-        }
-        Ok(())
     }
 
     /// Finds what the last improvement was to find together with multipliers between bounds, from where it began, and changes where the step leads by what

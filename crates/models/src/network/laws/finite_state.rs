@@ -410,6 +410,10 @@ fn check_that_all_fire(
     // what a control drives may be anything
     let is_driven = |name: &str| making.driven.iter().any(|driven| driven == name);
     let (unknowns, parameters) = variables.split_at(variables.len() - constants.len());
+    if making.driven.iter().any(|name| !parameters.contains(&name.as_str())) {
+        // a control that is misspelt is refused where it is written, and what it was to drive is not known
+        return Ok(());
+    }
     let known = || parameters.iter().zip(constants).filter(|(name, _)| !is_driven(name));
     let variables: Vec<&str> = unknowns
         .iter()
