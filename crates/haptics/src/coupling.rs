@@ -2,6 +2,8 @@
 
 use souple_math::Vec3;
 
+use crate::TICK;
+
 /// `F = k (a - b) + c (ȧ - ḃ)`, no longer than `limit` (Colgate, Stanley & Brown 1995, "Issues in the haptic display of tool use").
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupling {
@@ -29,6 +31,11 @@ impl Coupling {
     /// The pull on `b` towards `a` [N], not limited.
     pub fn pull(&self, a: Moving, b: Moving) -> Vec3 {
         (a.place - b.place) * self.stiffness + (a.velocity - b.velocity) * self.damping
+    }
+
+    /// A damping that an arm bears which bears this coupling, `M > T (k T/2 + c)`: with it a tick `T` does not turn the arm round [N s/m].
+    pub fn damping_borne(&self) -> f64 {
+        0.5 * TICK * self.stiffness + self.damping
     }
 
     /// A force no longer than what the device can give.

@@ -37,7 +37,7 @@ pub struct PortState {
 const ENGAGING: f64 = 0.2;
 /// Time in which what is in the account may be given back, at the soonest [s]: the force fades and does not fall.
 const GIVING: f64 = 5.0 * TICK;
-/// A hand that rests may have this speed at the next tick [m/s].
+/// By this a hand's velocity may be another at the next tick, in any direction [m/s].
 const STIRRING: f64 = 0.01;
 
 impl Port {
@@ -78,23 +78,35 @@ impl Port {
         state.engaged = (state.engaged + elapsed / ENGAGING).min(1.0);
         let hand = Moving { place, velocity: moved / elapsed };
         let pull = self.coupling.limited(pull(hand) * state.engaged);
-        let force = if self.passive { fitting(pull, hand.velocity, state.energy) } else { pull };
+        let force = if self.passive { self.fitting(pull, hand.velocity, state.energy) } else { pull };
         state.jump = state.jump.max((force - state.force).length());
         (state.place, state.force) = (place, force);
     }
-}
 
-/// The force with no more of it along the velocity than the account can pay.
-fn fitting(force: Vec3, velocity: Vec3, energy: f64) -> Vec3 {
-    let Some(direction) = velocity.try_normalised() else { return force };
-    let along = force.dot(direction);
-    let payable = energy.max(0.0) / ((velocity.length() + STIRRING) * GIVING);
-    if along > payable { force - direction * (along - payable) } else { force }
+    /// The force with no more of it than the account can pay: along the velocity, across it where the hand gives way, and against it what is beyond a damper, which
+    /// takes. A heavier push would turn the hand round within the tick, and take nothing. A hand that rests feels all.
+    fn fitting(&self, force: Vec3, velocity: Vec3, energy: f64) -> Vec3 {
+        let Some(direction) = velocity.try_normalised() else { return force };
+        let speed = velocity.length();
+        let payable = |speed: f64| energy.max(0.0) / ((speed + STIRRING) * GIVING);
+        let along = force.dot(direction);
+        let against = self.coupling.damping_borne() * speed + payable(0.0);
+        let fitting = along.max(-against).min(payable(speed));
+        let across = force - direction * along;
+        let (length, most) = (across.length(), payable(0.0));
+        let excess = if length > most { across * (1.0 - most / length) } else { Vec3::ZERO };
+        force + direction * (fitting - along) - excess
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use souple_engine::Motion;
+
     use super::*;
+    use crate::arm::{Arm, ArmState};
 
     const STIFF: Coupling = Coupling { stiffness: 2000.0, damping: 0.0, limit: 10.0 };
 
@@ -149,6 +161,50 @@ mod tests {
         let bound = 8.0 * 3e-3 * (std::f64::consts::TAU / 0.2).powi(2) * TICK * TICK;
         assert!(least >= -bound, "{least} {bound}");
         assert!(free < -10.0 * bound, "{free} {bound}");
+    }
+
+    /// A hand that means to go along `x`, at a speed that is given.
+    #[derive(Debug)]
+    struct Along(f64);
+
+    impl Motion for Along {
+        fn offset(&self, _: Vec3, time: f64) -> Vec3 {
+            Vec3::X * (self.0 * time)
+        }
+
+        fn velocity(&self, _: Vec3, _: f64) -> Vec3 {
+            Vec3::X * self.0
+        }
+    }
+
+    /// A tool that begins away from a hand that has put nothing in: it pulls at what rests, and no more once that has given way: what comes out is the work of that tick,
+    /// `F² T²/M` at most. Without control the hand is pulled after it.
+    #[test]
+    fn what_nobody_has_put_in_is_given_for_a_tick() {
+        const AWAY: f64 = 5e-3;
+        const MASS: f64 = 0.4;
+        let least_of = |passive: bool, speed: f64| {
+            let intent = Arc::new(Along(speed));
+            let (lost, delay) = ((0.0, 0.0), 0.06);
+            let arm = Arm { mass: MASS, stiffness: 300.0, damping: 8.0, reflex: 0.0, delay, lost, intent };
+            let port = Port { coupling: Coupling::DEFAULT, passive };
+            let (mut state, mut hand, mut least) = (Port::start(), ArmState::default(), 0.0_f64);
+            for _ in 0..500 {
+                let place = hand.hand.place;
+                let tool = Moving { place: Vec3::X * place.x + Vec3::Y * AWAY, velocity: Vec3::ZERO };
+                port.tick(&mut state, Some(place), TICK, tool);
+                least = least.min(state.energy);
+                arm.advance(state.force, TICK, &[], &mut hand);
+                arm.tick(&mut [], &mut hand);
+            }
+            least
+        };
+        let bound = (Coupling::DEFAULT.stiffness * AWAY * TICK).powi(2) / MASS;
+        for speed in [0.0, 0.02, 0.05] {
+            assert!(least_of(false, speed) < -100.0 * bound, "{speed}");
+            let least = least_of(true, speed);
+            assert!((-bound..-0.5 * bound).contains(&least), "{speed}: {least} {bound}");
+        }
     }
 
     /// The force is never longer than the device can give.

@@ -785,7 +785,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     &entry("hand.force", "of the device on the person", HAPTICS, hand("N", Vector, HandQuantity::Force)),
     &entry(
         "hand.energy",
-        "that the person has put into the device, less what came back: never negative where the device is passive",
+        "that the person has put into the device, less what came back: where the device is passive, below zero by the work of a tick at most",
         "Hannaford & Ryu 2002",
         hand("J", Number, HandQuantity::Energy),
     ),
