@@ -9,7 +9,7 @@ use souple_math::{Mat3, Vec3};
 
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError};
-use crate::unilateral::{Bounded, ContactSystem, Moving};
+use crate::unilateral::{Bounded, ContactSystem, Improved, Moving};
 
 use super::limits::{AT_LIMIT, Flowing, Yielding};
 use super::linearise::longest_way;
@@ -31,11 +31,13 @@ impl ConstraintSolver {
         let moving = self.moving(step, structure, positions, solved);
         let improved = contacts.improve(&moving, state, &mut places);
         self.places = places;
-        if !improved? {
+        let improved = improved?;
+        if improved == Improved::Nothing {
             return Ok(false);
         }
         self.follow_contacts(step, structure)?;
-        if self.is_wrong_after_contacts(step, structure)? {
+        // without forces of contacts limits are for the next solve
+        if improved == Improved::Forces && self.is_wrong_after_contacts(step, structure)? {
             self.places.clone_from(&self.unpushed);
             self.multipliers.clone_from(&self.unpushed_multipliers);
             self.push_with_limits((step, structure), contacts, positions)?;

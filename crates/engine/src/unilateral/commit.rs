@@ -39,7 +39,7 @@ impl ContactSystem {
         let mut worst = (0.0, (0, 0), 0);
         for (place, contact) in self.sought.iter().enumerate() {
             let contact = &self.contacts[*contact as usize];
-            let off = self.off_at(place).max(self.asked_less(place));
+            let off = self.off_at(place) + self.asked_less(place);
             if off >= worst.0 {
                 worst = (off, contact.of, contact.sides.rows[0] as usize);
             }
@@ -70,6 +70,6 @@ impl ContactSystem {
                 + self.starts.capacity()
                 + self.own.capacity())
             + self.is_sought.capacity()
-            + 4 * (self.sought.capacity() + self.columns.capacity())
+            + 4 * (self.sought.capacity() + self.columns.capacity() + self.waiting.capacity())
     }
 }

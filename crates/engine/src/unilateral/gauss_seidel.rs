@@ -3,13 +3,25 @@
 use souple_math::Vec3;
 
 use super::places::{Law, Place};
-use super::{CONVERGED, ContactSystem, LET_PASS, MOST_SWEEPS, PRODUCTS, SWEEPS_AFTER, SWEEPS_BEFORE, WEDGED};
+use super::{
+    CONVERGED, ContactSystem, LET_PASS, MOST_ROUNDS, MOST_SWEEPS, PRODUCTS, SWEEPS_AFTER, SWEEPS_BEFORE,
+    WEDGED,
+};
 
 /// What a sweep did to forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sweep {
     Settled,
     Moved,
+}
+
+/// What there is to be done about forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Judgement {
+    Solved,
+    NotYet,
+    /// And more sweeps would not help.
+    Unsolved,
 }
 
 impl ContactSystem {
@@ -140,30 +152,40 @@ impl ContactSystem {
         self.contacts[self.sought[place] as usize].near + CONVERGED * self.scale
     }
 
-    /// Whether no contact asks for another force, or sweeps do not help any more and what is left may pass.
-    pub(super) fn is_solved(&mut self) -> bool {
+    /// Whether contacts have the forces that they ask for, or what is left may pass where sweeps do not help any more.
+    pub(super) fn judge(&mut self) -> Judgement {
         let (mut worst, mut is_solved, mut is_little) = (0.0_f64, true, true);
         for place in 0..self.sought.len() {
+            let contact = &self.contacts[self.sought[place] as usize];
             let off = self.off_at(place);
-            let in_all = off.max(self.asked_less(place));
+            let in_all = off + self.asked_less(place);
+            let is_found = off <= self.may_be_off(place);
             worst = worst.max(in_all);
-            is_solved &= off <= self.may_be_off(place);
-            is_little &= in_all <= WEDGED * self.contacts[self.sought[place] as usize].near;
+            is_solved &= is_found;
+            is_little &= if contact.is_jammed { in_all <= WEDGED * contact.near } else { is_found };
         }
         self.report.contact_residual = if worst > 0.0 { worst / self.scale.max(worst) } else { 0.0 };
-        if !is_solved && self.sweeps() < MOST_SWEEPS {
-            return false;
+        if !is_solved && !self.is_spent() {
+            return Judgement::NotYet;
         }
-        let may_pass = self.report.contact_residual <= LET_PASS;
-        if !self.is_jammed {
-            return is_solved || may_pass;
+        let is_near = self.report.contact_residual <= LET_PASS;
+        let may_pass = match self.is_jammed {
+            true => is_near || is_little,
+            false => is_near || is_solved,
+        };
+        if self.is_jammed {
+            (self.report.wedged_steps, self.report.contacts_wedged) = (1, worst);
         }
-        (self.report.wedged_steps, self.report.contacts_wedged) = (1, worst);
-        may_pass || is_little
+        if may_pass { Judgement::Solved } else { Judgement::Unsolved }
+    }
+
+    /// Whether neither sweeps nor rounds are left.
+    pub(super) fn is_spent(&self) -> bool {
+        self.rounds == MOST_ROUNDS || self.sweeps() >= MOST_SWEEPS
     }
 
     /// Sweeps, and products in their place, since forces were begun to be sought.
-    pub(super) fn sweeps(&self) -> u64 {
+    fn sweeps(&self) -> u64 {
         self.report.contact_iterations - self.spent
     }
 }

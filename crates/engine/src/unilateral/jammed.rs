@@ -22,10 +22,10 @@ use super::{ContactSystem, Moving, WEDGED, fault};
 const GIVES_WAY: f64 = 1e-6;
 
 impl ContactSystem {
-    /// Begins the search for forces anew, from where the step leads without them, with less asked of contacts that have found none and of those that hang
+    /// Begins the search for forces anew, from where the step leads without them, with less asked of contacts that wait for it and of those that hang
     /// together with these; false where all of them are asked less already.
-    pub(super) fn begin_jammed(&mut self, moving: &Moving, places: &mut [Vec3], without: Vec<usize>) -> bool {
-        if !self.mark_jammed(without) {
+    pub(super) fn begin_jammed(&mut self, moving: &Moving, places: &mut [Vec3]) -> bool {
+        if !self.mark_jammed() {
             return false;
         }
         let square = moving.step.timestep * moving.step.timestep;
@@ -37,25 +37,53 @@ impl ContactSystem {
         }
         (self.spent, self.rounds, self.tightness) = (self.report.contact_iterations, 0, 1.0);
         // what contacts resist is laid out anew, with what they give way by
-        (self.is_jammed, self.has_bounded) = (true, true);
+        (self.is_jammed, self.is_laid_out_otherwise) = (true, true);
         true
     }
 
-    /// Asks less of contacts, and of those that touch the same bodies, and so on; whether there is any that was not.
-    fn mark_jammed(&mut self, mut waiting: Vec<usize>) -> bool {
+    /// Asks less of contacts that wait for it, of those that touch the same bodies, and so on; whether there is any that was not.
+    fn mark_jammed(&mut self) -> bool {
         let mut is_any = false;
-        while let Some(place) = waiting.pop() {
-            let Some(contact) = self.sought.get(place) else { continue };
-            let contact = &mut self.contacts[*contact as usize];
+        while let Some(place) = self.waiting.pop() {
+            let contact = &mut self.contacts[self.sought[place as usize] as usize];
             if std::mem::replace(&mut contact.is_jammed, true) {
                 continue;
             }
             is_any = true;
-            contact.wanted = contact.gap.clamp(-WEDGED * contact.near, 0.0);
-            let slots = self.starts[place]..self.starts[place + 1];
-            waiting.extend(self.columns[slots].iter().map(|other| *other as usize));
+            // what they give way by comes to what they are left inside
+            contact.wanted = contact.gap.clamp(-0.5 * WEDGED * contact.near, 0.0);
+            let slots = self.starts[place as usize]..self.starts[place as usize + 1];
+            self.waiting.extend_from_slice(&self.columns[slots]);
         }
         is_any
+    }
+
+    /// Has contacts that have not found their forces wait for less to be asked of them.
+    pub(super) fn wait_for_unsolved(&mut self) {
+        self.waiting.clear();
+        for place in 0..self.sought.len() {
+            if self.off_at(place) > self.may_be_off(place) {
+                self.waiting.push(place as u32);
+            }
+        }
+    }
+
+    /// Likewise those whose forces are such that rounding of these alone moves points farther than contacts are to be found to; the place of the one that
+    /// presses hardest.
+    pub(super) fn wait_for_beyond_numbers(&mut self) -> Option<usize> {
+        self.waiting.clear();
+        let mut worst = (0.0, None);
+        for place in 0..self.sought.len() {
+            let force = self.places[place].force + self.change[place];
+            let unknown = f64::EPSILON * self.length_of(place, force);
+            if unknown > self.may_be_off(place) {
+                self.waiting.push(place as u32);
+                if unknown > worst.0 {
+                    worst = (unknown, Some(place));
+                }
+            }
+        }
+        worst.1
     }
 
     /// Adds to what contacts resist alone what they give way by.
@@ -83,22 +111,13 @@ impl ContactSystem {
         Mat3::from_diagonal(Vec3::new(normal, tangent, tangent) * GIVES_WAY)
     }
 
-    /// How much less than the law a contact was asked for: what it has given way by to its force, or is left inside [m].
+    /// How much less than the law a contact was asked for: what it has given way by to its force, and is left inside [m].
     pub(super) fn asked_less(&self, place: usize) -> f64 {
         let contact = &self.contacts[self.sought[place] as usize];
         if !contact.is_jammed {
             return 0.0;
         }
-        (self.length_of(place, contact.force) * GIVES_WAY).max(-contact.wanted)
-    }
-
-    /// Places for which forces were found of which rounding alone moves points farther than contacts are to be found to.
-    pub(super) fn beyond_numbers(&self) -> Vec<usize> {
-        let is_beyond = |place: &usize| {
-            let force = self.places[*place].force + self.change[*place];
-            f64::EPSILON * self.length_of(*place, force) > self.may_be_off(*place)
-        };
-        (0..self.sought.len()).filter(is_beyond).collect()
+        self.length_of(place, contact.force) * GIVES_WAY - contact.wanted
     }
 
     /// Why such a force ends a run.

@@ -51,7 +51,7 @@ const WEDGED: f64 = 1e5;
 const TOLERANCE: f64 = 1e-11;
 /// Of coordinates of a body, what its relations are off by.
 const OF_RELATIONS: f64 = 1e-12;
-/// Sweeps over all contacts of a step, and products in the place of sweeps; as many again where bodies are jammed.
+/// Sweeps over all contacts of a step, and products in the place of sweeps; as many again each time that contacts are found jammed.
 const MOST_SWEEPS: u64 = 20_000;
 /// Sweeps after which forces are sought on the face that they have found, products with `D` of that search, more where there are more contacts, and sweeps after it. These are a round, after
 /// which it is looked where the step leads: what contacts of a body do not agree about to rounding is not swept away.
@@ -186,6 +186,16 @@ pub(crate) struct Moving<'a> {
     pub bounded: &'a [Bounded],
 }
 
+/// What was done about forces of contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Improved {
+    Nothing,
+    /// They were changed.
+    Forces,
+    /// They were taken away, and are sought anew of jammed bodies.
+    BegunAnew,
+}
+
 /// A contact in a step. Vectors are along the normal and two tangents.
 #[derive(Clone, Copy, Debug)]
 struct Contact {
@@ -244,6 +254,8 @@ pub(crate) struct ContactSystem {
     response: Vec<Vec3>,
     /// Of the search on a face.
     face: Face,
+    /// Places that are to be jammed, with what hangs together with them.
+    waiting: Vec<u32>,
     /// The greatest coordinate of a body, at its least row [m].
     reaches: Vec<f64>,
     /// The greatest way by which a gap or a slip is off without forces [m].
@@ -251,8 +263,8 @@ pub(crate) struct ContactSystem {
     /// Of how far off they may be, what sweeps go on to.
     tightness: f64,
     rounds: u32,
-    /// Whether multipliers are among the places.
-    has_bounded: bool,
+    /// Whether `D` was laid out with multipliers among the places, or before contacts were jammed.
+    is_laid_out_otherwise: bool,
     /// Whether it is known in this step which collide.
     are_decided: bool,
     /// Whether there are contacts that are asked less, and how many sweeps were spent when they were begun to be.

@@ -6,10 +6,8 @@ use crate::binding::Solved;
 use crate::state::SystemState;
 use crate::steppers::{Step, StepError, StepReport};
 
-use super::{
-    Contact, ContactSystem, MOST_ROUNDS, MOST_SWEEPS, Moving, OF_RELATIONS, TIGHTER, TOLERANCE, fault,
-    pairs_in,
-};
+use super::gauss_seidel::Judgement;
+use super::{Contact, ContactSystem, Improved, Moving, OF_RELATIONS, TIGHTER, TOLERANCE, fault, pairs_in};
 
 impl ContactSystem {
     /// Looks which contacts there are where the step starts, and takes their forces of the step before, which are among those that were summed, off where
@@ -24,7 +22,7 @@ impl ContactSystem {
         self.contacts.clear();
         self.sought.clear();
         (self.rounds, self.report) = (0, StepReport::default());
-        (self.are_decided, self.has_bounded, self.tightness) = (false, false, 1.0);
+        (self.are_decided, self.is_laid_out_otherwise, self.tightness) = (false, false, 1.0);
         (self.is_jammed, self.spent) = (false, 0);
         let earlier = (start - timestep).max(0.0);
         for (index, force) in system.forces.iter().enumerate() {
@@ -94,13 +92,13 @@ impl ContactSystem {
         }
     }
 
-    /// Where forces of contacts are to be changed after relations hold: changes them, and where the step leads with them; whether there was anything to change.
+    /// Where forces of contacts are to be changed after relations hold: changes them, and where the step leads with them.
     pub(crate) fn improve(
         &mut self,
         moving: &Moving,
         state: &SystemState,
         places: &mut [Vec3],
-    ) -> Result<bool, StepError> {
+    ) -> Result<Improved, StepError> {
         let is_first = self.rounds == 0;
         let is_more = match std::mem::replace(&mut self.are_decided, true) {
             false => self.decide(moving, state, places)?,
@@ -108,10 +106,10 @@ impl ContactSystem {
         };
         self.measure(moving, state, places)?;
         if self.sought.is_empty() {
-            return Ok(false);
+            return Ok(Improved::Nothing);
         }
         // what follows asks how contacts move each other, that a step is given up too
-        let is_other = is_more || std::mem::take(&mut self.has_bounded);
+        let is_other = is_more || std::mem::take(&mut self.is_laid_out_otherwise);
         if is_other {
             self.lay_out(moving);
         }
@@ -119,16 +117,34 @@ impl ContactSystem {
             self.fill(moving)?;
         }
         self.give_way();
-        if !is_more && self.is_solved() {
-            return Ok(false);
-        }
-        if self.rounds == MOST_ROUNDS || self.sweeps() >= MOST_SWEEPS {
-            let is_off = |place: &usize| self.off_at(*place) > self.may_be_off(*place);
-            let off = (0..self.sought.len()).filter(is_off).collect();
-            return match self.begin_jammed(moving, places, off) {
-                true => Ok(true),
-                false => Err(self.unsolved(moving.step, state)),
-            };
+        let judgement = match is_more {
+            false => self.judge(),
+            true if self.is_spent() => Judgement::Unsolved,
+            true => Judgement::NotYet,
+        };
+        match judgement {
+            Judgement::Solved => {
+                self.change.clear();
+                self.change.resize(self.places.len(), Vec3::ZERO);
+                for (place, contact) in self.sought.iter().enumerate() {
+                    self.places[place].force = self.contacts[*contact as usize].force;
+                }
+                return match self.wait_for_beyond_numbers() {
+                    None => Ok(Improved::Nothing),
+                    Some(worst) if !self.begin_jammed(moving, places) => {
+                        Err(self.too_hard(moving, state, worst))
+                    }
+                    Some(_) => Ok(Improved::BegunAnew),
+                };
+            }
+            Judgement::Unsolved => {
+                self.wait_for_unsolved();
+                return match self.begin_jammed(moving, places) {
+                    true => Ok(Improved::BegunAnew),
+                    false => Err(self.unsolved(moving.step, state)),
+                };
+            }
+            Judgement::NotYet => {}
         }
         self.rounds += 1;
         if is_first && !self.is_jammed {
@@ -138,16 +154,14 @@ impl ContactSystem {
                 .fold(0.0, |most, off| off.to_array().map(f64::abs).into_iter().fold(most, f64::max));
         }
         self.solve(is_first);
-        let beyond = self.beyond_numbers();
-        if !beyond.is_empty() {
-            let worst = beyond[0];
-            return match self.begin_jammed(moving, places, beyond) {
-                true => Ok(true),
+        if let Some(worst) = self.wait_for_beyond_numbers() {
+            return match self.begin_jammed(moving, places) {
+                true => Ok(Improved::BegunAnew),
                 false => Err(self.too_hard(moving, state, worst)),
             };
         }
         self.push(moving, places);
-        Ok(true)
+        Ok(Improved::Forces)
     }
 
     /// Finds what the last improvement was to find together with multipliers between bounds, from where it began, and changes where the step leads by what
@@ -158,7 +172,7 @@ impl ContactSystem {
         places: &mut [Vec3],
     ) -> Result<&[Vec3], StepError> {
         self.take_back();
-        self.has_bounded = true;
+        self.is_laid_out_otherwise = true;
         self.off.extend(moving.bounded.iter().map(|bounded| Vec3::X * bounded.off));
         self.lay_out(moving);
         self.fill(moving)?;
