@@ -4,6 +4,7 @@ use souple_math::Vec3;
 
 use crate::force::TangentWeights;
 use crate::inertia::solve_mass;
+use crate::levels::Filter;
 use crate::state::SystemState;
 use crate::steppers::Stability;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -80,8 +81,9 @@ pub fn forecast(
 
 /// The shortest interval that the points of a body with levels need [s], and the number of its force.
 fn shortest_of_levels(system: &System) -> Option<(f64, usize)> {
+    let filter = system.stepper.ticks(1.0).map_or(Filter::None, |(division, _)| division.filter);
     let bodies = system.forces.iter().enumerate();
-    let needed = bodies.filter_map(|(index, force)| Some((force.levels()?.shortest_interval(), index)));
+    let needed = bodies.filter_map(|(index, force)| Some((force.levels()?.shortest_interval(filter), index)));
     needed.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 

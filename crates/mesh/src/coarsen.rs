@@ -11,7 +11,7 @@ use souple_table::{Value, Values};
 use crate::decimate::{Plan, decimated, farthest, fit};
 use crate::fill::{Options, PARAMETERS, carry_groups, fill_mesh};
 use crate::repair::{RepairLimits, crossings};
-use crate::{ElementKind, Mesh, MeshError};
+use crate::{ElementKind, Mesh, MeshError, TriangleSurface};
 
 /// Other sizes that are tried, relative to the one asked for.
 const OTHERS: [f64; 6] = [0.98, 1.02, 0.96, 1.04, 0.94, 1.06];
@@ -22,6 +22,11 @@ pub fn radius_ratios(mesh: &Mesh) -> Vec<f64> {
         .filter(|cell| cell.kind == ElementKind::Tet4)
         .map(|cell| radius_ratio([0, 1, 2, 3].map(|corner: usize| mesh.points[cell.nodes[corner] as usize])))
         .collect()
+}
+
+/// How far two surfaces are from each other, the most that a point or the centre of a triangle of either is [m].
+pub fn surfaces_apart(one: &TriangleSurface, other: &TriangleSurface) -> f64 {
+    farthest(one, other).max(farthest(other, one))
 }
 
 pub(crate) fn radius_ratio([a, b, c, d]: [Vec3; 4]) -> f64 {
@@ -105,7 +110,7 @@ pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError
     let (outside, bound) = (mesh.boundary_surface(), NEAR * mesh.bounds().diagonal());
     let apart = |coarse: &Mesh| {
         let surface = coarse.boundary_surface();
-        farthest(&outside, &surface).max(farthest(&surface, &outside))
+        surfaces_apart(&outside, &surface)
     };
     let filled = filled_of_count(mesh, wanted);
     let mut nearest = filled.as_ref().map_or(f64::INFINITY, apart);
@@ -281,7 +286,7 @@ mod tests {
             let worst = radius_ratios(&mesh).into_iter().fold(f64::INFINITY, f64::min);
             assert!(worst > 0.1, "{wanted}: {worst}");
             let surface = mesh.boundary_surface();
-            let apart = farthest(&outside, &surface).max(farthest(&surface, &outside));
+            let apart = surfaces_apart(&outside, &surface);
             let diagonal = fine.bounds().diagonal();
             assert!(apart < NEAR * diagonal, "{wanted}: {apart} m of {diagonal} m");
             // what is smaller than a cell too

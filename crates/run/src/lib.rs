@@ -260,6 +260,8 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
         if stepper.stability() == Stability::Unconditional {
             continue;
         }
+        // points of levels have a bound on the safe side
+        let bears = if stepper.ticks(1.0).is_some() { "is sure to bear" } else { "bears" };
         let (name, stepper, forecast, stiffest) = world.with_system(index, |system, state, around, ws| {
             let forecast = souple_engine::stability::forecast(system, state, around, ws);
             let stiffest = forecast.stiffest.map(|force| format!(", of `{}`", system.forces[force].name()));
@@ -267,7 +269,7 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
         });
         if timestep > forecast.longest_step {
             warnings.push(format!(
-                "system `{name}`: a step of {timestep:.3e} s is longer than {stepper} bears at rest, {:.3e} s (highest frequency {:.4e} rad/s{stiffest}); shorten the period, raise steps_per_period, or take an implicit stepper",
+                "system `{name}`: a step of {timestep:.3e} s is longer than {stepper} {bears} at rest, {:.3e} s (highest frequency {:.4e} rad/s{stiffest}); shorten the period, raise steps_per_period, or take an implicit stepper",
                 forecast.longest_step, forecast.highest_frequency
             ));
         }

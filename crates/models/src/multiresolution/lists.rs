@@ -272,10 +272,7 @@ impl Work {
         let (frequency_sq, rate) = (self.stiffness[point] / mass, self.damping[point] / mass);
         // (h ω)² + 2 h c = 4: modified Euler with the damping of the velocity at the start
         let longest = 4.0 / (rate + (rate * rate + 4.0 * frequency_sq).sqrt());
-        match filter {
-            Filter::None => COURANT * longest,
-            Filter::SemiImplicit => 2.0 * COURANT * longest,
-        }
+        filter.lengthening() * COURANT * longest
     }
 
     /// The shortest interval that an active point needs [s].

@@ -94,8 +94,8 @@ impl Levels for LevelsForce {
         self.row_range()
     }
 
-    fn shortest_interval(&self) -> f64 {
-        self.shortest_interval
+    fn shortest_interval(&self, filter: Filter) -> f64 {
+        filter.lengthening() * self.shortest_interval
     }
 
     fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch) {

@@ -63,7 +63,8 @@ impl NeighbourFriction {
         let (force, v) = (self.force(point, velocities), velocities[point]);
         let FrictionFilter::Drop { timestep } = self.filter else { return force };
         let change = force * (timestep / self.masses[point]);
-        let speeds_up = change.dot(v) > 0.0;
+        // of what rests any change does
+        let speeds_up = change.dot(v) >= 0.0;
         let turns_back = (v + change).dot(v) < 0.0;
         if speeds_up || turns_back { Vec3::ZERO } else { force }
     }
@@ -146,7 +147,7 @@ impl Force for NeighbourFriction {
 mod tests {
     use super::*;
 
-    /// Friction that is filtered never speeds a particle up and never turns it back within a step.
+    /// Friction that is filtered never speeds a particle up, nor sets one in motion that rests, and never turns it back within a step.
     #[test]
     fn filtered_friction_only_brakes() {
         let neighbours = vec![vec![1, 2], vec![0], vec![0]];
@@ -155,9 +156,10 @@ mod tests {
         let filter = FrictionFilter::Drop { timestep };
         let number = |i: usize, salt: f64| ((i as f64 + salt) * 12.9898).sin();
         for (trial, coefficient) in (0..200).flat_map(|trial| [(trial, 0.3), (trial, 3.0)]) {
-            let v: Vec<Vec3> = (3 * trial..3 * trial + 3)
+            let mut v: Vec<Vec3> = (3 * trial..3 * trial + 3)
                 .map(|i| Vec3::new(number(i, 0.1), number(i, 0.2), number(i, 0.3)))
                 .collect();
+            v[trial % 3] = v[trial % 3] * (trial % 2) as f64;
             let force = NeighbourFriction::new(
                 "friction".to_owned(),
                 0,
@@ -182,6 +184,7 @@ mod tests {
             for ((f, v), mass) in out.iter().zip(&v).zip(&masses) {
                 let next = *v + *f * (timestep / mass);
                 assert!(f.dot(*v) <= 0.0 && next.dot(*v) >= 0.0, "{f:?} {v:?}");
+                assert!(*v != Vec3::ZERO || *f == Vec3::ZERO, "{f:?}");
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use souple_engine::Force;
-use souple_engine::levels::{Division, Levels, Pace};
+use souple_engine::levels::{Division, Filter, Levels, Pace};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
@@ -205,13 +205,17 @@ pub(super) fn check_fixed(
     }
 }
 
-/// Whether the shortest interval of the stepper is short enough, and its filter one for this coupling.
+/// Whether the shortest interval of the stepper is short enough for rates by the bound, and its filter one for this coupling. Where all points are pushed in
+/// every tick there are no rates: what is longer than the bound is warned of, as of any other explicit stepper.
 fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpec, force: &LevelsForce) {
     let Some(stepper) = &system.stepper else { return };
     let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return };
     let step = draft.timestep(system);
-    let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval());
-    if tick > needed {
+    let is_semi_implicit = stepper.values.boolean("semi_implicit");
+    let filter = if is_semi_implicit { Filter::SemiImplicit } else { Filter::None };
+    let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval(filter));
+    let has_rates = halvings > 0 && stepper.values.text("schedule") != "together";
+    if has_rates && tick > needed {
         let enough = (step / needed).log2().ceil();
         let message = format!("the shortest interval is {tick:.3e} s, and some points need {needed:.3e} s");
         let halvings = stepper.entry.parameters.iter().find(|parameter| parameter.name == "halvings");
@@ -231,7 +235,7 @@ fn check_steps(draft: &Draft, system: &SystemSpec, body: &Body, spec: &LevelsSpe
         };
         draft.log.add(Code::Conflict, site, message, expected);
     }
-    if stepper.values.boolean("semi_implicit") && spec.coupling == Coupling::Transpose {
+    if is_semi_implicit && spec.coupling == Coupling::Transpose {
         let message = "semi-implicit points brake all motion, and this coupling keeps its momentum";
         draft.log.add(Code::Conflict, stepper.site_of("semi_implicit"), message, "`coupling = \"one_way\"`");
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use souple_engine::levels::Levels;
+use souple_engine::levels::{Filter, Levels};
 use souple_engine::{Force, Mass};
 use souple_mesh::{Group, Mesh};
 use souple_models::materials::{AnyLaw, MaterialLaw};
@@ -150,7 +150,7 @@ fn check_steps(draft: &Draft, system: &SystemSpec, force: &OctreeForce) {
     let Some(stepper) = &system.stepper else { return };
     let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return };
     let step = draft.timestep(system);
-    let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval());
+    let (tick, needed) = (step / (1_u64 << halvings) as f64, force.shortest_interval(Filter::None));
     if tick > needed {
         let enough = (step / needed).log2().ceil();
         let message =

@@ -3,6 +3,8 @@
 use souple_engine::levels::{Evaluations, Neighbours};
 use souple_engine::steppers::Schedule;
 use souple_engine::{Census, World};
+use souple_mesh::Mesh;
+use souple_mesh::coarsen::{radius_ratios, surfaces_apart};
 
 use super::LevelsPart;
 use crate::scene::{census, variation, workload};
@@ -25,6 +27,7 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
             .fold(0.0, f64::max),
         LevelsQuantity::Ghosts => census().map_or(0.0, |census| count(census.ghosts)),
         LevelsQuantity::Cells => census().map_or(0.0, |census| count(census.cells)),
+        LevelsQuantity::RadiusRatio | LevelsQuantity::Distance => part.of_meshes,
         LevelsQuantity::Jump => part.dress.as_ref().map_or(0.0, |dress| dress.greatest_jump(world)),
         LevelsQuantity::Nearness => census().map_or(0.0, |census| {
             let levels: Vec<f64> = census.level_of_point.iter().map(|level| f64::from(*level)).collect();
@@ -43,6 +46,16 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
             if sum == 0 { 0.0 } else { most as f64 * ticks.len() as f64 / sum as f64 }
         }),
     }
+}
+
+/// What a quantity says of the meshes of a body at rest, the last being its own, of which some are looked at.
+pub fn of_meshes(quantity: LevelsQuantity, own: &Mesh, meshes: &[&Mesh]) -> f64 {
+    if quantity == LevelsQuantity::RadiusRatio {
+        return meshes.iter().flat_map(|mesh| radius_ratios(mesh)).fold(f64::INFINITY, f64::min);
+    }
+    let outside = own.boundary_surface();
+    let apart = meshes.iter().map(|mesh| surfaces_apart(&outside, &mesh.boundary_surface()));
+    apart.fold(0.0, f64::max)
 }
 
 fn neighbours(census: Option<Census>) -> Neighbours {

@@ -22,6 +22,7 @@ use std::collections::BTreeMap;
 
 use souple_engine::{Force, World};
 use souple_math::Vec3;
+use souple_mesh::Mesh;
 
 use self::against::Reference;
 use self::masses::{Mould, Multitude};
@@ -154,6 +155,8 @@ struct LevelsPart {
     rows: Vec<u32>,
     /// What it wears.
     dress: Option<DressInfo>,
+    /// What is asked of its meshes, where it is of them.
+    of_meshes: f64,
     /// Of a nearness: the distances at rest of the points of the finest mesh from its place [m].
     distances: Vec<f64>,
 }
@@ -561,6 +564,19 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
         draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`, without `fixed`");
         return None;
     }
+    if probe.quantity.build.is_of_meshes() && body.spec.octree.is_some() {
+        let message = format!("particles of body `{}` are no tetrahedra", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`");
+        return None;
+    }
+    let meshes: Vec<&Mesh> = body.levels_of().chain([body]).map(|level| &level.mesh).collect();
+    let wanted = probe.level.map_or(&meshes[..], |level| &meshes[level..=level]);
+    let of_meshes = match probe.quantity.build.subject {
+        Subject::Levels(quantity) if probe.quantity.build.is_of_meshes() => {
+            levels::of_meshes(quantity, &body.mesh, wanted)
+        }
+        _ => 0.0,
+    };
     let is_near = probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Nearness);
     let distance = |x: &Vec3| (*x - probe.about.unwrap_or(Vec3::ZERO)).length();
     Some(LevelsPart {
@@ -573,6 +589,7 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
             Vec::new()
         },
         dress,
+        of_meshes,
         distances: if is_near { body.mesh.points.iter().map(distance).collect() } else { Vec::new() },
     })
 }

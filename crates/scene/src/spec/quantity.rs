@@ -119,6 +119,8 @@ pub enum LevelsQuantity {
     UnlistedNeighbours,
     Nearness,
     Variation,
+    RadiusRatio,
+    Distance,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -243,6 +245,11 @@ impl Quantity {
         matches!(self.subject, Subject::Levels(LevelsQuantity::Active | LevelsQuantity::Variation))
     }
 
+    /// Whether it is of the meshes of a body with levels, as they rest.
+    pub fn is_of_meshes(&self) -> bool {
+        matches!(self.subject, Subject::Levels(LevelsQuantity::RadiusRatio | LevelsQuantity::Distance))
+    }
+
     /// Whether it is of bodies whose elements change their law.
     pub fn is_of_adaptation(&self) -> bool {
         matches!(self.subject, Subject::Cells(CellQuantity::Law | CellQuantity::Excess))
@@ -284,6 +291,7 @@ const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const ADAPTATION: &str = "Faure 2014, §6.4";
 const LEVELS: &str = "Debunne 2000, 5 §2.3";
+const SHAPES: &str = "Debunne 2000, 5 §2.1";
 const HAPTICS: &str = "Debunne 2000, 6 §3; Colgate, Stanley & Brown 1995";
 const OUTLINE: &str = "Jimenez 1993, P2-III.2.3";
 const HEAT: &str = "Jimenez 1993, P1-II.4.2, after Terzopoulos, Platt & Fleischer 1989";
@@ -727,6 +735,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "tetrahedra, or particles, of all levels or of the key `level`, whether at work or not",
         LEVELS,
         levels("", LevelsQuantity::Cells),
+    ),
+    &entry(
+        "levels.radius_ratio",
+        "three times the inscribed over the circumscribed radius of a tetrahedron at rest, the least, of all levels or of the key `level`: 1 of a regular one, 0 of a flat one",
+        SHAPES,
+        levels("", LevelsQuantity::RadiusRatio),
+    ),
+    &entry(
+        "levels.distance",
+        "how far the surface of a level at rest, of the key `level` or of any, and that of the body's own mesh are from each other, from points of either: the most",
+        SHAPES,
+        levels("m", LevelsQuantity::Distance),
     ),
     &entry(
         "levels.evaluations",

@@ -20,11 +20,13 @@ mod fluids;
 mod formulations;
 mod frames;
 mod frequencies;
+mod ghosts;
 mod hands;
 mod heat;
 mod implicit;
 mod incompressible;
 mod inelastic;
+mod integrators;
 mod late;
 mod layers;
 mod levels;
@@ -42,6 +44,7 @@ mod network;
 mod network_friction;
 mod network_stability;
 mod octree;
+mod particle_friction;
 mod patch;
 mod plastic_bodies;
 mod point_cells;
@@ -158,9 +161,13 @@ pub const TABLES: &[&[Case]] = &[
     views::CASES,
     frames::CASES,
     octree::CASES,
+    particle_friction::CASES,
     resolution::CASES,
     resolution::SPRINGS,
     levels::CASES,
+    ghosts::CASES,
+    integrators::CASES,
+    integrators::LIMITS,
     point_cells::CASES,
     hands::CASES,
     late::CASES,

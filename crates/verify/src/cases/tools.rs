@@ -71,6 +71,12 @@ const SLOWLY: &[&str] = &[
 
 /// Meshes of the numbers that the source has.
 const FAMILY: &str = "bodies.liver.levels={ cells = [28, 172] }";
+const MIDDLE: &str = r#"probes.of_level={ body = "liver", quantity = "levels.cells", level = 1 }"#;
+const FINEST: &str = r#"probes.of_level={ body = "liver", quantity = "levels.cells", level = 2 }"#;
+const SHAPES: &str = r#"probes.shapes={ body = "liver", quantity = "levels.radius_ratio" }"#;
+const SURFACE: &str = r#"probes.surface={ body = "liver", quantity = "levels.distance", level = 0 }"#;
+/// Of the box around the organ of 1876 tetrahedra, as `souple mesh quality` prints its corners [m].
+const DIAGONAL: f64 = 0.285_99;
 
 /// A law that stiffens by an exponential, a tool at 2 m/s, and intervals down to 4 µs where velocities change by more than 5 cm/s.
 const BRUTAL: &[&str] = &[
@@ -254,6 +260,55 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(0.2),
         source: "V-30: within 20 % of a requested number",
         mutation: "bodies.liver.levels.cells=[60, 172]",
+        ..LIVER
+    },
+    Case {
+        id: "levels_family_middle",
+        capabilities: &["DEB-27"],
+        what: "tetrahedra of the middle one",
+        settings: &[FAMILY, "bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1874", MIDDLE],
+        reading: Reading::last("of_level").after(1),
+        reference: 172.0,
+        tolerance: Tolerance::Relative(0.2),
+        source: "V-30: within 20 % of a requested number",
+        mutation: "bodies.liver.levels.cells=[28, 300]",
+        ..LIVER
+    },
+    Case {
+        id: "levels_family_finest",
+        capabilities: &["DEB-27"],
+        what: "tetrahedra of the finest",
+        settings: &[FAMILY, "bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1874", FINEST],
+        reading: Reading::last("of_level").after(1),
+        reference: 1874.0,
+        tolerance: Tolerance::Relative(0.2),
+        source: "V-30: within 20 % of a requested number",
+        mutation: "bodies.liver.mesh.count=3000",
+        ..LIVER
+    },
+    Case {
+        id: "levels_family_shapes",
+        capabilities: &["DEB-27"],
+        what: "least radius ratio of all their tetrahedra: none is flat",
+        settings: &[FAMILY, "bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1874", SHAPES],
+        reading: Reading::last("shapes").after(1),
+        reference: 0.1,
+        tolerance: Tolerance::AtLeast,
+        source: "V-30: above 0.1",
+        // a slab whose cells are a hundred times as long as they are high
+        mutation: r#"bodies.liver={ mesh = { generate = "box", size = [0.2, 0.2, 0.01], cells = [2, 2, 10], element = "tet4" }, material = { name = "linear", youngs_modulus = 0.1, poissons_ratio = 0.3, density = 1000 }, levels = { coarser = [{ mesh = { generate = "box", size = [0.2, 0.2, 0.01], cells = [1, 1, 5], element = "tet4" } }] } }"#,
+        ..LIVER
+    },
+    Case {
+        id: "levels_family_surface",
+        capabilities: &["DEB-27"],
+        what: "how far the surface of the coarsest one is from that of the body, at most, of the diagonal",
+        settings: &[FAMILY, "bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1874", SURFACE],
+        reading: Reading::last("surface").after(1),
+        reference: 0.05 * DIAGONAL,
+        tolerance: Tolerance::AtMost,
+        source: "V-30: less than 5 % of the diagonal at the coarsest level",
+        mutation: r#"bodies.liver.levels={ count = 3, ratio = 2 }"#,
         ..LIVER
     },
     Case {

@@ -5,7 +5,9 @@
 
 use std::ops::Range;
 
-use souple_engine::levels::{Census, Division, Evaluations, Followers, Kinematic, Levels, Neighbours, Push};
+use souple_engine::levels::{
+    Census, Division, Evaluations, Filter, Followers, Kinematic, Levels, Neighbours, Push,
+};
 use souple_engine::{Rows, Scratch};
 use souple_math::Vec3;
 
@@ -63,7 +65,8 @@ impl Levels for OctreeForce {
         self.row_range()
     }
 
-    fn shortest_interval(&self) -> f64 {
+    /// Particles have no filter.
+    fn shortest_interval(&self, _filter: Filter) -> f64 {
         self.intervals.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
