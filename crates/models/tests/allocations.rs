@@ -321,6 +321,7 @@ fn velocities_are_asked() {
         mass_damping: 0.0,
         budget: None,
         cuts: Vec::new(),
+        supports: Vec::new(),
     })
     .unwrap();
     let division = Division { velocity_jump: 1.0, ..Division::new(1e-3, 3) };

@@ -21,6 +21,7 @@ use souple_models::loads::RigidMotion;
 use souple_models::materials::{Material, TABLE};
 use souple_models::multiresolution::{
     Choice, Coupling, Criterion, LevelsDescription, LevelsForce, Loops, Measure, PLACE_VARIABLES, Stiffness,
+    Support,
 };
 use souple_solve::BlockMatrix;
 use souple_table::{Value, Values};
@@ -72,8 +73,21 @@ fn body(meshes: &[Mesh], coupling: Coupling, choice: Choice) -> LevelsForce {
 }
 
 fn body_of(meshes: &[Mesh], coupling: Coupling, choice: Choice, stiffness: Stiffness) -> LevelsForce {
+    body_held(meshes, coupling, choice, stiffness, |_| false)
+}
+
+/// The same with its points held where that is so.
+fn body_held(
+    meshes: &[Mesh],
+    coupling: Coupling,
+    choice: Choice,
+    stiffness: Stiffness,
+    is_held: impl Fn(Vec3) -> bool,
+) -> LevelsForce {
     let all: Vec<&Mesh> = meshes.iter().collect();
     let finest = meshes.last().unwrap();
+    let places = [finest].into_iter().chain(&meshes[..meshes.len() - 1]).flat_map(|mesh| &mesh.points);
+    let held = (0..).zip(places).filter(|(_, place)| is_held(**place)).map(|(point, _)| point).collect();
     LevelsForce::new(LevelsDescription {
         name: "body.material".to_owned(),
         meshes: &all,
@@ -88,6 +102,7 @@ fn body_of(meshes: &[Mesh], coupling: Coupling, choice: Choice, stiffness: Stiff
         mass_damping: 0.0,
         budget: None,
         cuts: Vec::new(),
+        supports: vec![Support { points: held, axes: [true; 3] }],
     })
     .unwrap()
 }
@@ -437,6 +452,7 @@ fn semi_implicit_points_bear_twice_the_step() {
                 mass_damping: 0.0,
                 budget: None,
                 cuts: Vec::new(),
+                supports: Vec::new(),
             });
             let mut world = world(force.unwrap(), stepper(0, filter), period, |x| x.x < 1e-9);
             set_velocities(&mut world, |x| Vec3::new(x.z * x.x, x.y * x.y - x.x, 3.0 * x.x + x.y) * 1e-3);
@@ -471,6 +487,7 @@ fn budgeted(meshes: &[Mesh], criterion: Criterion, budget: Option<f64>) -> Level
         mass_damping: 0.0,
         budget,
         cuts: Vec::new(),
+        supports: Vec::new(),
     })
     .unwrap()
 }
@@ -578,6 +595,48 @@ fn coarse_meshes_are_never_stiffened() {
         let shortest = [&softened, &own].map(|force| force.shortest_interval(Filter::None));
         assert!(shortest[0] >= shortest[1], "{semi_axes:?} {shares:?}");
     }
+}
+
+/// Points of the finest mesh that are at work where the coarse one would be, were the body held nowhere.
+fn fine_points(meshes: &[Mesh], is_held: impl Fn(Vec3) -> bool) -> Vec<Vec3> {
+    let force = body_held(meshes, Coupling::Transpose, fixed("0"), Stiffness::Own, is_held);
+    let finest = meshes.last().unwrap().points.len();
+    let alone = Alone::new(force);
+    let active = alone.force.active(&alone.scratch).iter().map(|row| *row as usize);
+    active.filter(|row| *row < finest).map(|row| alone.force.hierarchy().rest[row]).collect()
+}
+
+/// A coarse mesh with one point, or none, where the finest has a patch would turn about it: finer points stay at work there, and there alone. One that has
+/// the corners of a face holds it.
+#[test]
+fn supports_hold_at_every_level() {
+    let meshes = [cube(2.0), cube(8.0)];
+    let at_corner = |x: Vec3| x.x < 1e-9 && x.y < 0.03 && x.z < 0.03;
+    let beside = |x: Vec3| x.x < 1e-9 && (0.01..0.04).contains(&x.y) && (0.01..0.04).contains(&x.z);
+    for is_held in [&at_corner as &dyn Fn(Vec3) -> bool, &beside] {
+        let fine = fine_points(&meshes, is_held);
+        let held = meshes[1].points.iter().filter(|place| is_held(**place));
+        assert!(held.clone().count() == 9 && held.clone().all(|place| fine.contains(place)));
+        // no farther than the Voronoi cells of the corners of a coarse tetrahedron
+        assert!(fine.iter().all(|x| x.to_array().into_iter().all(|x| x < 0.08)), "{fine:?}");
+    }
+    assert!(fine_points(&meshes, |x| x.x < 1e-9).is_empty());
+    assert!(fine_points(&meshes, |_| false).is_empty());
+}
+
+/// A body that is held is compared as it is held: the share of a clamped cube's moduli is another than that of a free one, and still one that softens.
+#[test]
+fn clamped_meshes_yield_as_the_finest() {
+    let meshes = [cube(2.0), cube(4.0), cube(8.0)];
+    let of = |is_held: fn(Vec3) -> bool| {
+        let force = body_held(&meshes, Coupling::Transpose, fixed("0"), Stiffness::AsHeld, is_held);
+        force.share_of_moduli().to_vec()
+    };
+    let (clamped, free) = (of(|x| x.x < 1e-9), of(|_| false));
+    assert!(0.3 < clamped[0] && clamped[0] < clamped[1] && clamped[1] < 1.0, "{clamped:?}");
+    assert!(clamped[0] != free[0], "{clamped:?} {free:?}");
+    // two points are a hinge: the loads of a body that is free say how it yields
+    assert_eq!(of(|x| x.x < 1e-9 && x.y < 1e-9 && (x.z < 1e-9 || x.z > 0.0999)), free);
 }
 
 /// A contact that tells what it reaches, or says that it reaches everything; it counts how often it is asked.

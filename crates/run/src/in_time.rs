@@ -50,7 +50,9 @@ pub struct InTime {
 /// Why there is no run in time.
 #[derive(Debug, thiserror::Error)]
 pub enum TimeError {
-    #[error("the scene has no hand; it needs [hands.NAME]")]
+    #[error(
+        "the scene has no hand; it needs [hands.NAME], as `scenes/hand_on_liver` has one: its organ is pressed by a hand"
+    )]
     NoHand,
     #[error("the device of hand `{hand}`: {why}")]
     Device { hand: String, why: String },

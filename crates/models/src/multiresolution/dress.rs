@@ -345,6 +345,7 @@ mod tests {
             mass_damping: 0.0,
             budget: None,
             cuts: Vec::new(),
+            supports: Vec::new(),
         })
         .unwrap();
         let mut surface = cube(7.0).boundary_surface();

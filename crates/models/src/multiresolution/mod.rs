@@ -9,6 +9,7 @@
 //! - `roles`: who is active, and what the others follow;
 //! - `matter`: what each tetrahedron stands for;
 //! - `stiffness`: how much stiffer than the finest mesh a coarser one is;
+//! - `supports`: which levels hold the body where it is held;
 //! - `criterion`, `adapt`: when points come and go;
 //! - `cuts`: what is cut through;
 //! - `lists`, `elastic`: what a step goes through;
@@ -25,6 +26,7 @@ mod matter;
 mod roles;
 mod stepping;
 mod stiffness;
+mod supports;
 
 use std::any::Any;
 use std::ops::Range;
@@ -48,11 +50,13 @@ use elastic::{ALL_CORNERS, Due, LawMemory, Values};
 use lists::Work;
 use matter::Matter;
 use souple_engine::levels::Followers;
+use supports::Supports;
 
 pub use criterion::{Criterion, Measure};
 pub use dress::{Dress, Fading, Worn};
 pub use links::{Hierarchy, LevelsError, Loops, MOST};
 pub use roles::Role;
+pub use supports::Support;
 
 /// What becomes of the forces on ghosts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +75,8 @@ pub enum Stiffness {
     /// Their moduli brought down so that they yield to the softest loads of the body as the finest mesh does; homogeneous
     /// strain is then as much too soft.
     AsFinest,
+    /// The same under the loads of a body that is held, where pins hold it: what is too stiff around them counts too.
+    AsHeld,
 }
 
 /// Who decides which level is at work.
@@ -112,6 +118,8 @@ pub struct LevelsDescription<'a> {
     pub budget: Option<f64>,
     /// In any order: they are made at their dates.
     pub cuts: Vec<Cut>,
+    /// What holds it, points ascending.
+    pub supports: Vec<Support>,
 }
 
 /// Matter that carries nothing from a date on.
@@ -143,6 +151,7 @@ pub struct LevelsForce {
     whole_masses: Vec<f64>,
     /// Points that never have anything to move: finer ones are always in their place.
     is_empty: Vec<bool>,
+    supports: Supports,
     /// Of all points, were their level alone at work: the shortest that is longest for one of them [s].
     shortest_interval: f64,
 }
@@ -167,15 +176,22 @@ impl LevelsForce {
             finest_masses: Vec::new(),
             whole_masses: Vec::new(),
             is_empty: Vec::new(),
+            supports: Supports::default(),
             shortest_interval: f64::INFINITY,
             hierarchy,
             matter,
         };
         force.cuts = Cuts::new(&force.hierarchy, &force.matter, description.cuts);
         force.weigh();
-        if description.stiffness == Stiffness::AsFinest {
-            force.share_of_moduli =
-                stiffness::shares_of_compliance(&force.hierarchy, &force.matter, &force.finest_masses);
+        force.supports = Supports::new(&force.hierarchy, &force.matter, &description.supports);
+        if description.stiffness != Stiffness::Own {
+            let is_held = description.stiffness == Stiffness::AsHeld;
+            force.share_of_moduli = stiffness::shares_of_compliance(
+                &force.hierarchy,
+                &force.matter,
+                &force.finest_masses,
+                is_held.then_some(&force.supports),
+            );
         }
         force.find_empty_points();
         for level in 0..force.hierarchy.level_count() {
@@ -279,6 +295,7 @@ impl LevelsForce {
     fn is_subdivided(&self, memory: &[f64], point: usize) -> bool {
         point >= self.finest_count()
             && (self.is_empty[point]
+                || self.supports.gives_way[point]
                 || memory[point - self.finest_count()] != 0.0
                 || self.cuts.is_beside(point, memory[self.cuts_made()]))
     }

@@ -3,9 +3,10 @@
 //! Linear tetrahedra hold every affine deformation and are too stiff for all others, the more so the larger they are: a lobe
 //! with two of them across resists bending with a multiple of its stiffness. What a body as a whole does is mostly what is
 //! soft in it, so one number for each level brings its moduli down to those with which it yields as the finest mesh does.
-//! The loads are those of the body's inertia as it bends, twists and stretches unevenly: `M u` of the eighteen fields `u`
-//! that are quadratic in the place and orthogonal, in the masses, to each other and to all affine ones. They are in balance by
-//! themselves, so the body needs no support; their compliance `Σ f·K⁻¹f` does not depend on the axes chosen.
+//! The loads are those of the body's inertia: `M u` of fields `u` that are polynomials of the place and orthogonal in the masses.
+//! A body that is free bears the eighteen quadratic ones, that are in balance by themselves. One that is compared as it is held bears those of all thirty
+//! up to the second degree, its weight and what turns it among them, as most of what is too stiff may be where it is held. The compliance
+//! `Σ f·K⁻¹f` does not depend on the axes chosen.
 
 use std::sync::Arc;
 
@@ -17,6 +18,7 @@ use souple_solve::{BlockMatrix, Pattern, SolveError};
 
 use super::links::{Hierarchy, Tet};
 use super::matter::Matter;
+use super::supports::Supports;
 use crate::materials::Lame;
 
 /// Monomials up to the second degree in the place.
@@ -26,9 +28,23 @@ const AFFINE: usize = 4;
 /// Compliances are off by about the square of this, relatively.
 const SOLVE: Settings = Settings { tolerance: 0.02, max_iterations: 1000 };
 
-/// Stiffness at rest of one level, on its points: `K_ij = Σ V ((λ g_i g_jᵀ) + μ (g_j g_iᵀ + g_i·g_j 1))`.
-fn stiffness_of(hierarchy: &Hierarchy, matter: &Matter, level: usize) -> Result<BlockMatrix, SolveError> {
+const ALL: Vec3 = Vec3::new(1.0, 1.0, 1.0);
+
+/// A vector without what is along held axes.
+fn free_part(v: Vec3, held: [bool; 3]) -> Vec3 {
+    let [x, y, z] = std::array::from_fn(|axis| if held[axis] { 0.0 } else { v[axis] });
+    Vec3::new(x, y, z)
+}
+
+/// Stiffness at rest of one level, on its points: `K_ij = Σ V ((λ g_i g_jᵀ) + μ (g_j g_iᵀ + g_i·g_j 1))`, where they are not held.
+fn stiffness_of(
+    hierarchy: &Hierarchy,
+    matter: &Matter,
+    level: usize,
+    held: &[[bool; 3]],
+) -> Result<BlockMatrix, SolveError> {
     let (points, tets) = (&hierarchy.levels[level], &hierarchy.tets_of_level[level]);
+    let free = |row: u32| held.get(points.start + row as usize).map(|held| free_part(ALL, *held));
     let own = |corners: [u32; 4]| corners.map(|corner| corner - points.start as u32);
     let parts: Vec<(&Tet, Lame, f64)> = matter
         .slots
@@ -49,7 +65,10 @@ fn stiffness_of(hierarchy: &Hierarchy, matter: &Matter, level: usize) -> Result<
             bears[row as usize] = true;
             for (column, h) in own(tet.corners).into_iter().zip(tet.gradients) {
                 let block = g.outer(h) * moduli.lambda + h.outer(g) * moduli.mu;
-                let block = block.plus_diagonal(moduli.mu * g.dot(h)) * volume;
+                let mut block = block.plus_diagonal(moduli.mu * g.dot(h)) * volume;
+                if let (Some(left), Some(right)) = (free(row), free(column)) {
+                    block = Mat3::from_diagonal(left) * block * Mat3::from_diagonal(right);
+                }
                 matrix.add(row as usize, column as usize, &block)?;
             }
         }
@@ -58,49 +77,82 @@ fn stiffness_of(hierarchy: &Hierarchy, matter: &Matter, level: usize) -> Result<
     for (row, _) in bears.iter().enumerate().filter(|(_, bears)| !**bears) {
         matrix.add(row, row, &Mat3::IDENTITY)?;
     }
+    let scale = matrix.mean_diagonal();
+    for (row, held) in held.get(points.clone()).into_iter().flatten().enumerate() {
+        let rest = ALL - free_part(ALL, *held);
+        matrix.add(row, row, &(Mat3::from_diagonal(rest) * scale))?;
+    }
     Ok(matrix)
 }
 
 /// Of each level: its compliance over that of the finest mesh, by which its moduli are to be multiplied for both to yield
 /// alike; 1 for the finest, and at most: a coarser mesh is stiffer as it is.
-pub fn shares_of_compliance(hierarchy: &Hierarchy, matter: &Matter, masses: &[f64]) -> Vec<f64> {
+pub fn shares_of_compliance(
+    hierarchy: &Hierarchy,
+    matter: &Matter,
+    masses: &[f64],
+    supports: Option<&Supports>,
+) -> Vec<f64> {
     let mut shares = vec![1.0; hierarchy.level_count()];
-    if hierarchy.level_count() == 1 {
-        return shares;
-    }
-    let mut loads = loads(hierarchy, masses);
-    let finest = compliance(hierarchy, matter, hierarchy.finest(), &loads);
-    for level in (0..hierarchy.finest()).rev() {
-        for load in &mut loads {
-            for point in hierarchy.levels[level + 1].clone() {
-                let (carrier, force) = (hierarchy.parent(point), std::mem::take(&mut load[point]));
-                for (corner, weight) in carrier.corners.into_iter().zip(carrier.weights) {
-                    load[corner as usize] += force * weight;
-                }
-            }
+    // a level that does not hold the body alone is compared as if nothing held it
+    let is_held = |level: usize| supports.is_some_and(|supports| supports.is_fast && supports.holds[level]);
+    let coarser = 0..hierarchy.finest();
+    for with_supports in [true, false] {
+        let held: &[[bool; 3]] = supports.filter(|_| with_supports).map_or(&[], |supports| &supports.held);
+        if coarser.clone().all(|level| is_held(level) != with_supports) {
+            continue;
         }
-        let share = compliance(hierarchy, matter, level, &loads) / finest;
-        // a body too small to bend has none; what hangs on next to no matter yields without end, and says nothing of the rest
-        if share.is_finite() && share > 0.0 {
-            shares[level] = share.min(1.0);
+        let mut loads = loads(hierarchy, masses, with_supports);
+        let finest = compliance(hierarchy, matter, hierarchy.finest(), held, &loads);
+        for level in coarser.clone().rev() {
+            hand_on(hierarchy, level, &mut loads);
+            if is_held(level) != with_supports {
+                continue;
+            }
+            let share = compliance(hierarchy, matter, level, held, &loads) / finest;
+            // a body too small to bend has none; what hangs on next to no matter yields without end, and says nothing of the rest
+            if share.is_finite() && share > 0.0 {
+                shares[level] = share.min(1.0);
+            }
         }
     }
     shares
 }
 
+/// Gives the loads of the next finer level to a level, by its links.
+fn hand_on(hierarchy: &Hierarchy, level: usize, loads: &mut [Vec<Vec3>]) {
+    for load in loads {
+        for point in hierarchy.levels[level + 1].clone() {
+            let (carrier, force) = (hierarchy.parent(point), std::mem::take(&mut load[point]));
+            for (corner, weight) in carrier.corners.into_iter().zip(carrier.weights) {
+                load[corner as usize] += force * weight;
+            }
+        }
+    }
+}
+
 /// `Σ f·u` with `K u = f` on a level; not finite where its matrix is none that can be solved.
-fn compliance(hierarchy: &Hierarchy, matter: &Matter, level: usize, loads: &[Vec<Vec3>]) -> f64 {
+fn compliance(
+    hierarchy: &Hierarchy,
+    matter: &Matter,
+    level: usize,
+    held: &[[bool; 3]],
+    loads: &[Vec<Vec3>],
+) -> f64 {
     let points = hierarchy.levels[level].clone();
     let solved = || -> Result<f64, SolveError> {
-        let matrix = stiffness_of(hierarchy, matter, level)?;
-        // no support: it is definite but for rigid motions, of which balanced loads have no part
+        let matrix = stiffness_of(hierarchy, matter, level, held)?;
+        // without a support it is definite but for rigid motions, of which balanced loads have no part
         let preconditioner = IncompleteCholesky::new(&matrix)?;
         let bears = |row: usize| matrix.pattern().row(row).len() > 1;
         let of = |load: &Vec<Vec3>| -> f64 {
             let mut workspace = ConjugateGradientWorkspace::default();
             // what nothing resists would yield without end
             let load = load[points.clone()].iter().enumerate();
-            let f: Vec<Vec3> = load.map(|(row, f)| if bears(row) { *f } else { Vec3::ZERO }).collect();
+            let free =
+                |row: usize, f: Vec3| held.get(points.start + row).map_or(f, |held| free_part(f, *held));
+            let f: Vec<Vec3> =
+                load.map(|(row, f)| if bears(row) { free(row, *f) } else { Vec3::ZERO }).collect();
             let mut u = vec![Vec3::ZERO; points.len()];
             // where it stops short of its tolerance, the work of the best so far counts
             conjugate_gradient(&matrix, &preconditioner, &f, &mut u, &SOLVE, &mut workspace);
@@ -112,8 +164,8 @@ fn compliance(hierarchy: &Hierarchy, matter: &Matter, level: usize, loads: &[Vec
     solved().unwrap_or(f64::NAN)
 }
 
-/// `M u` of the quadratic fields, on the finest points.
-fn loads(hierarchy: &Hierarchy, masses: &[f64]) -> Vec<Vec<Vec3>> {
+/// `M u` of the quadratic fields, and of all below them where the body is held, on the finest points.
+fn loads(hierarchy: &Hierarchy, masses: &[f64], is_held: bool) -> Vec<Vec<Vec3>> {
     let points = hierarchy.levels[hierarchy.finest()].clone();
     let monomials = orthonormal_monomials(&hierarchy.rest[points.clone()], masses);
     let load = |(monomial, axis): (&Vec<f64>, Vec3)| {
@@ -124,8 +176,9 @@ fn loads(hierarchy: &Hierarchy, masses: &[f64]) -> Vec<Vec<Vec3>> {
         f
     };
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-    let quadratic = monomials.iter().filter(|(number, _)| *number >= AFFINE).map(|(_, values)| values);
-    quadratic.flat_map(|monomial| axes.map(|axis| (monomial, axis))).map(load).collect()
+    let first = if is_held { 0 } else { AFFINE };
+    let borne = monomials.iter().filter(|(number, _)| *number >= first).map(|(_, values)| values);
+    borne.flat_map(|monomial| axes.map(|axis| (monomial, axis))).map(load).collect()
 }
 
 /// What is left of a monomial beside those before it, of itself, below which it is none of its own: of points in two planes `z²` is a sum of `1` and

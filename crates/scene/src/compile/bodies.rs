@@ -80,6 +80,11 @@ impl Placed<'_> {
         self.levels.iter().flat_map(|levels| &levels.coarser)
     }
 
+    /// Whether this is one of the coarser meshes of a body.
+    pub fn is_coarser(&self) -> bool {
+        self.spec.levels.is_some() && self.levels.is_none()
+    }
+
     /// Points of all its meshes, which are rows one after the other.
     fn point_count(&self) -> usize {
         self.mesh.points.len() + self.levels.as_ref().map_or(0, PlacedLevels::point_count)

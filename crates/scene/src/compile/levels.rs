@@ -8,7 +8,9 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
 use souple_mesh::{BoundingBox, Mesh, OpeningSurface};
-use souple_models::multiresolution::{Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Worn};
+use souple_models::multiresolution::{
+    Coupling, Cut, Dress, Fading, LevelsDescription, LevelsForce, Support, Worn,
+};
 use souple_models::solids::Section;
 use souple_table::{Value, four_digits, readable};
 
@@ -17,6 +19,7 @@ use super::{Draft, shape};
 use crate::diagnostic::{Code, Site};
 use crate::scene::DressInfo;
 use crate::spec::body::{Body, MassKind};
+use crate::spec::boundary::Pin;
 use crate::spec::levels::{CutSpec, LevelsSpec};
 use crate::spec::world::SystemSpec;
 
@@ -143,6 +146,7 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
         mass_damping: body.spec.damping.rayleigh_mass,
         budget: spec.budget,
         cuts: cuts(draft, body, spec),
+        supports: supports(draft, body, levels),
     };
     match LevelsForce::new(description) {
         Ok(force) => {
@@ -156,6 +160,22 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
             None
         }
     }
+}
+
+/// What each pin holds of the body's own mesh, and of the coarser ones, whose numbers follow.
+fn supports(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Vec<Support> {
+    let support = |pin: &Pin| {
+        let region = pin.region.as_ref()?;
+        let mut support = Support { points: Vec::new(), axes: pin.axes };
+        let mut first = 0;
+        for level in [body].into_iter().chain(&levels.coarser) {
+            let points = draft.selector(level).points_if_any(region);
+            support.points.extend(points.iter().map(|point| first + point));
+            first += level.mesh.points.len() as u32;
+        }
+        Some(support)
+    };
+    body.spec.pins.iter().filter_map(support).collect()
 }
 
 /// Cells of the body's own mesh, by the dates at which they are cut.

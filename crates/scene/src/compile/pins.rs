@@ -163,7 +163,9 @@ fn holds(draft: &Draft, body: &Placed) -> BTreeMap<u32, Hold> {
     for (index, pin) in body.spec.pins.iter().enumerate() {
         let Some(region) = &pin.region else { continue };
         let Some(motion) = motion_of_pin(draft.log, draft.spec, pin) else { continue };
-        let points = draft.selector(body).points(region);
+        let selector = draft.selector(body);
+        // where a coarser mesh has no point to hold, a finer one stays at work
+        let points = if body.is_coarser() { selector.points_if_any(region) } else { selector.points(region) };
         if let Some(motion) = &motion
             && !starts_finite(draft, body, pin, motion.as_ref(), &points)
         {

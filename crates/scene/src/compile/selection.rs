@@ -33,6 +33,11 @@ impl Selector<'_> {
         found
     }
 
+    /// The same of a mesh that need have none there.
+    pub fn points_if_any(&self, region: &Region) -> Vec<u32> {
+        self.point_mask(region).map_or_else(Vec::new, |mask| indices(&mask))
+    }
+
     /// Cells of a region, ascending; an empty region is refused.
     pub fn cells(&self, region: &Region) -> Vec<u32> {
         let centres = self.mesh.cell_centres();

@@ -86,8 +86,8 @@ pub(crate) static LEVELS: Keys = Keys::new(
         .or(Value::Text("activated")),
         Key::new(
             "stiffness",
-            Shape::Choice(&["own", "as_finest"]),
-            "of the coarser meshes: as their tetrahedra are, too stiff, or with moduli by which each yields to the body's softest loads as the finest does",
+            Shape::Choice(&["own", "as_finest", "as_held"]),
+            "of the coarser meshes: as their tetrahedra are, too stiff, or with moduli by which each yields to the body's softest loads as the finest does, free or as pins hold it",
         )
         .or(Value::Text("own")),
         Key::new(
@@ -214,10 +214,10 @@ impl LevelsSpec {
                 Coupling::Transpose
             },
             loops,
-            stiffness: if reader.choice("stiffness") == "as_finest" {
-                Stiffness::AsFinest
-            } else {
-                Stiffness::Own
+            stiffness: match reader.choice("stiffness") {
+                "as_finest" => Stiffness::AsFinest,
+                "as_held" => Stiffness::AsHeld,
+                _ => Stiffness::Own,
             },
             criterion,
             fixed: reader.maybe_formula("fixed"),
