@@ -103,7 +103,7 @@ impl ContactSystem {
         self.face = face;
     }
 
-    fn force_at(&self, place: usize) -> Vec3 {
+    pub(super) fn force_at(&self, place: usize) -> Vec3 {
         self.places[place].force + self.change[place]
     }
 

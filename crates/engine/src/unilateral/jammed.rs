@@ -74,8 +74,7 @@ impl ContactSystem {
         self.waiting.clear();
         let mut worst = (0.0, None);
         for place in 0..self.sought.len() {
-            let force = self.places[place].force + self.change[place];
-            let unknown = f64::EPSILON * self.length_of(place, force);
+            let unknown = f64::EPSILON * self.length_of(place, self.force_at(place));
             if unknown > self.may_be_off(place) {
                 self.waiting.push(place as u32);
                 if unknown > worst.0 {
@@ -123,7 +122,7 @@ impl ContactSystem {
     /// Why such a force ends a run.
     pub(super) fn too_hard(&self, moving: &Moving, state: &SystemState, place: usize) -> StepError {
         let contact = &self.contacts[self.sought[place] as usize];
-        let force = (self.places[place].force + self.change[place]).length();
+        let force = self.force_at(place).length();
         let what = format!(
             "is to be pressed with {force:.1e} N, beside which no number holds what moves it: bodies lock themselves between surfaces that friction does not let them \
              leave; take less friction"
